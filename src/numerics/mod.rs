@@ -1,0 +1,3 @@
+//! Mathematics without physics and without files.
+
+pub mod statistics;

@@ -1,0 +1,65 @@
+//! Means, spreads and confidence intervals of small samples.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Mean of a sample with its spread and the confidence interval of the mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeanEstimate {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Sample standard deviation (divisor n - 1); NaN for fewer than two values.
+    pub standard_deviation: f64,
+    /// Half width of the two-sided 95 % confidence interval of the mean, Student's t with n - 1
+    /// degrees of freedom; NaN for fewer than two values.
+    pub confidence_95: f64,
+    /// Number of values.
+    pub count: usize,
+}
+
+impl MeanEstimate {
+    /// Estimate from a sample; the values are taken as independent.
+    pub fn of(values: &[f64]) -> Self {
+        let count = values.len();
+        let n = count as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        if count < 2 {
+            return Self { mean, standard_deviation: f64::NAN, confidence_95: f64::NAN, count };
+        }
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        let standard_deviation = variance.sqrt();
+        let confidence_95 = student_t_975(n - 1.0) * standard_deviation / n.sqrt();
+        Self { mean, standard_deviation, confidence_95, count }
+    }
+}
+
+/// The 97.5 % quantile of Student's t, the factor of a two-sided 95 % interval.
+///
+/// # Panics
+/// If `degrees_of_freedom` is not positive.
+pub fn student_t_975(degrees_of_freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees_of_freedom)
+        .expect("degrees of freedom must be positive")
+        .inverse_cdf(0.975)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interval_of_five_values_uses_the_tabulated_quantile() {
+        let estimate = MeanEstimate::of(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(estimate.mean, 3.0);
+        approx::assert_relative_eq!(estimate.standard_deviation, 2.5_f64.sqrt(), epsilon = 1e-14);
+        // t(0.975, 4) = 2.776445 in every table.
+        let expected = 2.776_445_105 * 2.5_f64.sqrt() / 5.0_f64.sqrt();
+        approx::assert_relative_eq!(estimate.confidence_95, expected, max_relative = 1e-8);
+    }
+
+    #[test]
+    fn a_single_value_has_no_interval() {
+        let estimate = MeanEstimate::of(&[2.0]);
+        assert_eq!(estimate.mean, 2.0);
+        assert!(estimate.confidence_95.is_nan());
+    }
+}
