@@ -15,5 +15,7 @@
 //! positive in compression; a positive friction coefficient opposes the motion. Missing heights
 //! are NaN and nothing else is.
 
+pub mod contact;
 pub mod numerics;
+pub mod rubber;
 pub mod surface;

@@ -1,3 +1,4 @@
 //! Mathematics without physics and without files.
 
+pub mod krylov;
 pub mod statistics;

@@ -1,0 +1,255 @@
+//! Active-set iteration for the contact on one grid.
+//!
+//! Semismooth Newton for the complementarity problem: solve the linear system for the pressures
+//! on the present contact set, then drop points under tension and add points that penetrate.
+//! The linear systems are solved by GMRES, preconditioned from the left, so that its tolerance
+//! is one of pressure: near a contact edge it is the sign of a small pressure that decides.
+
+use super::half_space::HalfSpace;
+use super::preconditioner::Preconditioner;
+use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
+
+/// How accurate a grid has to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Goal {
+    /// A start for the next finer grid: few points still change.
+    Start,
+    /// The answer: no point changes and the residual is below the tolerance.
+    Solution {
+        /// Tolerance of the residual.
+        tolerance: f64,
+    },
+}
+
+/// Contact on one grid, updated in place.
+pub(super) struct Contact<'a> {
+    pub space: &'a mut HalfSpace,
+    /// Heights with mean zero.
+    pub heights: &'a [f64],
+    /// Displacement by a unit pressure at point 0.
+    pub kernel: &'a [f64],
+    pub mean_pressure: f64,
+    /// Pressures; the contact set is where they are positive.
+    pub pressure: Vec<f64>,
+    /// Displacement under `pressure`.
+    pub displacement: Vec<f64>,
+    pub mean_separation: f64,
+}
+
+/// What an iteration ended with.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outcome {
+    pub converged: bool,
+    pub iterations: usize,
+    pub krylov_iterations: usize,
+    pub changes: usize,
+}
+
+/// Relative tolerance of the linear solves once the set rests, or where looser ones have let it
+/// wander. While it moves the tolerance is one over the number of points: the pressure next to a
+/// contact edge, whose sign decides, falls with a power of the spacing between a half and one.
+const TIGHT: f64 = 1e-8;
+/// Active-set iterations with loose, then with tight linear solves.
+const LOOSE_ITERATIONS: usize = 25;
+const MOST_ITERATIONS: usize = 600;
+/// Iterations before a growing number of changes is damped.
+const UNDAMPED_ITERATIONS: usize = 3;
+/// Iterations after which a coarse grid has done its duty, converged or not.
+const START_ITERATIONS: usize = 40;
+const MOST_KRYLOV_ITERATIONS: usize = 120;
+
+/// Points that are on the wrong side.
+struct Violations {
+    leave: Vec<u32>,
+    enter: Vec<u32>,
+}
+
+impl Contact<'_> {
+    /// Iterates to the goal.
+    pub fn solve(&mut self, goal: Goal) -> Outcome {
+        let mut set = self.contact_set();
+        let mut tight = false;
+        let mut krylov_iterations = 0;
+        let mut iteration = 0;
+        let mut damping: f64 = 1.0;
+        let mut previous = usize::MAX;
+        loop {
+            iteration += 1;
+            let tolerance = if tight { TIGHT } else { 1.0 / self.heights.len() as f64 };
+            krylov_iterations += self.solve_on(&set, tolerance);
+            let residual = self.residual(&set);
+            let wrong = self.violations(&set, goal);
+            let changes = wrong.leave.len() + wrong.enter.len();
+            let outcome = |converged| Outcome {
+                converged,
+                iterations: iteration,
+                krylov_iterations,
+                changes,
+            };
+            match goal {
+                Goal::Start if changes == 0 || iteration == START_ITERATIONS => {
+                    self.drop_tension();
+                    return outcome(true);
+                }
+                Goal::Solution { tolerance } if changes == 0 && residual <= tolerance => {
+                    self.drop_tension();
+                    return outcome(true);
+                }
+                _ if iteration == MOST_ITERATIONS => return outcome(false),
+                _ => {}
+            }
+            tight = changes == 0 || iteration > LOOSE_ITERATIONS;
+            if iteration > UNDAMPED_ITERATIONS {
+                let grows = changes >= previous;
+                damping = if grows { 0.5 * damping } else { (1.5 * damping).min(1.0) };
+            }
+            previous = changes;
+            set = exchange(&set, &wrong, damping, self.heights.len());
+            if set.is_empty() {
+                set.push(self.highest_point());
+            }
+            self.keep_pressure_on(&set);
+        }
+    }
+
+    fn contact_set(&self) -> Vec<u32> {
+        let points = 0..self.pressure.len() as u32;
+        points.filter(|i| self.pressure[*i as usize] > 0.0).collect()
+    }
+
+    fn highest_point(&self) -> u32 {
+        let height = |i: &usize| self.heights[*i];
+        (0..self.heights.len()).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0) as u32
+    }
+
+    /// Solves `w + ubar = z` on the set at the given load; returns the Krylov iterations.
+    fn solve_on(&mut self, set: &[u32], tolerance: f64) -> usize {
+        let preconditioner = Preconditioner::new(self.space, self.kernel, set);
+        let mut t: Vec<f64> = set.iter().map(|i| self.pressure[*i as usize]).collect();
+        let load = self.mean_pressure * self.pressure.len() as f64;
+        preconditioner.add_force(load - t.iter().sum::<f64>(), &mut t);
+        let mut r = vec![0.0; set.len()];
+        self.space.displacement_on(set, &t, &mut r);
+        for (r, i) in r.iter_mut().zip(set) {
+            *r = self.heights[*i as usize] - *r;
+        }
+        let mut correction = vec![0.0; set.len()];
+        preconditioner.apply(self.space, set, &r, &mut correction);
+        // A correction that is round-off of the pressures is none.
+        let limits = KrylovLimits {
+            tolerance: (tolerance * euclidean_norm(&correction)).max(1e-15 * euclidean_norm(&t)),
+            max_iterations: MOST_KRYLOV_ITERATIONS,
+        };
+        let mut displaced = vec![0.0; set.len()];
+        let operator = |v: &[f64], out: &mut [f64]| {
+            self.space.displacement_on(set, v, &mut displaced);
+            preconditioner.apply(self.space, set, &displaced, out);
+        };
+        let report = gmres(operator, &mut correction, limits);
+        self.pressure.fill(0.0);
+        for ((i, t), dt) in set.iter().zip(&t).zip(&correction) {
+            self.pressure[*i as usize] = t + dt;
+        }
+        self.space.displacement(&self.pressure, &mut self.displacement);
+        let gap = |i: &u32| self.heights[*i as usize] - self.displacement[*i as usize];
+        self.mean_separation = set.iter().map(gap).sum::<f64>() / set.len() as f64;
+        report.iterations
+    }
+
+    /// Largest separation on the set over the root mean square displacement.
+    fn residual(&self, set: &[u32]) -> f64 {
+        let scale = self.displacement_scale();
+        let largest =
+            set.iter().map(|i| self.separation(*i as usize).abs()).fold(0.0_f64, f64::max);
+        largest / scale
+    }
+
+    fn separation(&self, i: usize) -> f64 {
+        self.mean_separation + self.displacement[i] - self.heights[i]
+    }
+
+    fn displacement_scale(&self) -> f64 {
+        let n = self.displacement.len() as f64;
+        let rms = euclidean_norm(&self.displacement) / n.sqrt();
+        // A flat profile has no displacement and no residual either.
+        if rms > 0.0 { rms } else { 1.0 }
+    }
+
+    fn violations(&self, set: &[u32], goal: Goal) -> Violations {
+        // Round-off decides the side of a point whose pressure and gap both vanish.
+        let margin = match goal {
+            Goal::Start => 0.0,
+            Goal::Solution { tolerance } => 0.5 * tolerance,
+        };
+        let tension = -margin * self.mean_pressure;
+        let penetration = -margin * self.displacement_scale();
+        let mut wrong = Violations { leave: Vec::new(), enter: Vec::new() };
+        let mut in_contact = set.iter().copied().peekable();
+        for i in 0..self.heights.len() {
+            if in_contact.next_if_eq(&(i as u32)).is_some() {
+                if self.pressure[i] < tension {
+                    wrong.leave.push(i as u32);
+                }
+            } else if self.separation(i) < penetration {
+                wrong.enter.push(i as u32);
+            }
+        }
+        wrong
+    }
+
+    fn keep_pressure_on(&mut self, set: &[u32]) {
+        let mut in_contact = set.iter().copied().peekable();
+        for (i, t) in self.pressure.iter_mut().enumerate() {
+            *t = if in_contact.next_if_eq(&(i as u32)).is_some() { t.max(0.0) } else { 0.0 };
+        }
+    }
+
+    /// Sets pressures below zero, which are within the tolerance, to zero.
+    fn drop_tension(&mut self) {
+        self.pressure.iter_mut().for_each(|t| *t = t.max(0.0));
+    }
+}
+
+/// The next contact set: of each run of neighbouring wrong points the share `damping` (at least
+/// one) changes sides, from the contact edge on.
+///
+/// Where the rubber is lossy the edge condition is so weak on one side of a contact that an edge
+/// one point off makes many points change; exchanging them all at once can then overshoot for
+/// ever.
+fn exchange(set: &[u32], wrong: &Violations, damping: f64, points: usize) -> Vec<u32> {
+    let in_contact = |i: usize| set.binary_search(&(i as u32)).is_ok();
+    let chosen = |list: &[u32], leaving: bool| -> Vec<u32> {
+        let mut chosen = Vec::with_capacity(list.len());
+        for run in list.chunk_by(|a, b| *b == a + 1) {
+            let (first, last) = (run[0] as usize, run[run.len() - 1] as usize);
+            // The edge is where the neighbour of the run is on the side that the run goes to.
+            let edge_before = in_contact((first + points - 1) % points) != leaving;
+            let edge_after = in_contact((last + 1) % points) != leaving;
+            let count = ((run.len() as f64 * damping).ceil() as usize).max(1);
+            chosen.extend(from_the_edge(run, count, edge_before, edge_after));
+        }
+        chosen
+    };
+    let (leave, enter) = (chosen(&wrong.leave, true), chosen(&wrong.enter, false));
+    let mut leave = leave.iter().peekable();
+    let mut next: Vec<u32> =
+        set.iter().filter(|i| leave.next_if_eq(i).is_none()).copied().collect();
+    next.extend(&enter);
+    next.sort_unstable();
+    next
+}
+
+/// `count` points of a run: from its one edge, from both, or from its middle if it has none.
+fn from_the_edge(run: &[u32], count: usize, before: bool, after: bool) -> Vec<u32> {
+    let n = run.len();
+    match (before, after) {
+        (true, false) => run[..count].to_vec(),
+        (false, true) => run[n - count..].to_vec(),
+        (true, true) => {
+            let left = count.div_ceil(2);
+            let right = (n - (count - left)).max(left);
+            [&run[..left], &run[right..]].concat()
+        }
+        (false, false) => run[(n - count) / 2..(n + count) / 2].to_vec(),
+    }
+}

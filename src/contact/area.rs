@@ -1,0 +1,1 @@
+//! The pressure for a wanted contact area.

@@ -1,0 +1,62 @@
+//! What can go wrong in a contact problem.
+
+/// Why there is no solution to report.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// The rubber's numbers are no rubber.
+    #[error(transparent)]
+    Rubber(#[from] crate::rubber::RubberError),
+    /// A number outside its range.
+    #[error("{quantity} is {value}, it must be {range}")]
+    OutOfRange {
+        /// Which number, with its unit.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range it must lie in.
+        range: &'static str,
+    },
+    /// A height that is no number.
+    #[error("height {index} of the profile is {value}: fill or cut missing points first")]
+    BadHeight {
+        /// Zero-based index of the first bad height.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The iteration ended before the residual was small enough.
+    #[error(
+        "the contact did not converge: p = {pressure:e} Pa, v = {speed:e} m/s, {points} points: \
+         residual {residual:.1e} after {iterations} iterations with {changes} points still \
+         changing sides; try another number of points"
+    )]
+    NotConverged {
+        /// Mean pressure in Pa.
+        pressure: f64,
+        /// Sliding speed in m/s.
+        speed: f64,
+        /// Grid points.
+        points: usize,
+        /// Residual as in [`crate::contact::ContactSolution::residual`].
+        residual: f64,
+        /// Active-set iterations on the finest grid.
+        iterations: usize,
+        /// Points that changed between contact and gap in the last iteration.
+        changes: usize,
+    },
+    /// No pressure was found that gives the wanted contact area.
+    #[error(
+        "no pressure gives the contact area fraction {wanted} on {points} points: the nearest \
+         found is {found} at {pressure:e} Pa; use more points for a smaller area"
+    )]
+    AreaNotReached {
+        /// The wanted contact area fraction.
+        wanted: f64,
+        /// The nearest one found.
+        found: f64,
+        /// Its mean pressure in Pa.
+        pressure: f64,
+        /// Grid points.
+        points: usize,
+    },
+}

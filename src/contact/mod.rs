@@ -1,0 +1,32 @@
+//! Steady sliding contact of a linear viscoelastic half-space with a rigid periodic profile.
+//!
+//! In the frame of the profile the field stands still. Separation, pressure and load obey
+//!
+//! ```text
+//! u(x) = ubar + w(x) - z(x),   t >= 0,  u >= 0,  u t = 0,   mean(t) = p
+//! w_hat(q) = 2 / (|q| E_r(q v)) t_hat(q),   mean(w) = mean(z) = 0
+//! ```
+//!
+//! | module | what it does |
+//! |---|---|
+//! | [`half_space`] | the operator from pressure to displacement, by FFT |
+//! | `islands`, `preconditioner` | runs of contact points; the operator's approximate inverse on them |
+//! | `active_set` | the contact set and the pressures on one grid |
+//! | [`sliding`] | nested grids from coarse to fine: the solver that users call |
+//! | [`solution`] | friction, area, separation, dissipation and residual of a solved contact |
+//! | [`area`] | the pressure that gives a wanted contact area |
+
+pub mod area;
+pub mod half_space;
+pub mod sliding;
+pub mod solution;
+
+mod active_set;
+mod edges;
+mod error;
+mod islands;
+mod preconditioner;
+
+pub use error::ContactError;
+pub use sliding::SlidingContact;
+pub use solution::ContactSolution;

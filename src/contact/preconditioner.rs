@@ -1,0 +1,129 @@
+//! Approximate inverse of the half-space operator on a contact set.
+
+use super::half_space::HalfSpace;
+use super::islands::Islands;
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::{Mat, MatMut};
+
+/// More islands than this are merged for the coarse part: its dense factors then cost less than
+/// one transform of the grids on which so many islands occur.
+const MOST_ISLANDS: usize = 256;
+
+/// Approximates the pressures on the contact set that give a displacement there at unchanged
+/// load: the solution of `[A e; e^T 0] [t; ubar] = [r; 0]` with `A` the half-space operator
+/// restricted to the set.
+///
+/// Two parts. Within an island the restriction of the inverse operator (a filter by
+/// `|q| E_r / 2`) is close to the inverse of the restriction. Between islands it is not, since it
+/// holds the free surface in the gaps still: there the displacement of each island is reduced to
+/// one number, and the forces between islands come from a small dense system in which islands act
+/// on each other as point forces.
+pub(super) struct Preconditioner {
+    islands: Islands,
+    /// Pressure under a flat punch on each island, with unit sum.
+    shape: Vec<f64>,
+    coarse: Option<Coarse>,
+}
+
+struct Coarse {
+    factors: PartialPivLu<f64>,
+    scale: f64,
+}
+
+impl Preconditioner {
+    /// Preconditioner for a nonempty contact set; `kernel` is the displacement by a unit pressure
+    /// at point 0.
+    pub fn new(space: &mut HalfSpace, kernel: &[f64], set: &[u32]) -> Self {
+        let points = space.points();
+        let islands = Islands::of(set, points, MOST_ISLANDS);
+        let mut shape = vec![0.0; set.len()];
+        space.pressure_on(set, &vec![1.0; set.len()], &mut shape);
+        // The gaps make the edges of an island stiff, so the sum is positive; should round-off or
+        // merging break that, a uniform pressure serves.
+        let sums = islands.sums(shape.iter().copied());
+        let counts = islands.sums(std::iter::repeat_n(1.0, set.len()));
+        for (s, id) in shape.iter_mut().zip(&islands.of_point) {
+            let id = *id as usize;
+            *s = if sums[id] > 0.0 { *s / sums[id] } else { 1.0 / counts[id] };
+        }
+        let coarse = (islands.count > 1).then(|| Coarse::new(space, kernel, set, &islands, &shape));
+        Self { islands, shape, coarse }
+    }
+
+    /// Spreads `force` (a sum over grid points) over the set, each island in proportion to its
+    /// present load.
+    pub fn add_force(&self, force: f64, pressure: &mut [f64]) {
+        let loads = self.islands.sums(pressure.iter().map(|t| t.max(0.0)));
+        let total: f64 = loads.iter().sum();
+        for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.islands.of_point) {
+            let share = if total > 0.0 {
+                loads[*id as usize] / total
+            } else {
+                1.0 / self.islands.count as f64
+            };
+            *t += force * share * s;
+        }
+    }
+
+    /// Pressures (sum zero) for the displacements `r` on the set.
+    pub fn apply(&self, space: &mut HalfSpace, set: &[u32], r: &[f64], pressure: &mut [f64]) {
+        let means = self.islands.sums(r.iter().zip(&self.shape).map(|(r, s)| r * s));
+        let local: Vec<f64> =
+            r.iter().zip(&self.islands.of_point).map(|(r, id)| r - means[*id as usize]).collect();
+        space.pressure_on(set, &local, pressure);
+        let mut forces = self.islands.sums(pressure.iter().copied());
+        let between = match &self.coarse {
+            Some(coarse) => coarse.solve(&means),
+            None => vec![0.0; self.islands.count],
+        };
+        for (f, b) in forces.iter_mut().zip(&between) {
+            *f = b - *f;
+        }
+        for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.islands.of_point) {
+            *t += s * forces[*id as usize];
+        }
+    }
+}
+
+impl Coarse {
+    fn new(
+        space: &mut HalfSpace,
+        kernel: &[f64],
+        set: &[u32],
+        islands: &Islands,
+        shape: &[f64],
+    ) -> Self {
+        let (points, count) = (space.points(), islands.count);
+        let centres = islands.centres(set, points, shape);
+        let mut displaced = vec![0.0; set.len()];
+        space.displacement_on(set, shape, &mut displaced);
+        let row_sums = islands.sums(displaced.iter().zip(shape).map(|(w, s)| w * s));
+        let scale = kernel[0].abs();
+        let mut matrix = Mat::<f64>::zeros(count + 1, count + 1);
+        for j in 0..count {
+            let mut others = 0.0;
+            for k in (0..count).filter(|k| *k != j) {
+                let steps = (centres[j] - centres[k]).round() as i64;
+                let influence = kernel[steps.rem_euclid(points as i64) as usize];
+                matrix[(j, k)] = influence / scale;
+                others += influence;
+            }
+            // One application to all shapes at once gives the row sums; what the other islands
+            // do not explain is the island's own compliance.
+            matrix[(j, j)] = (row_sums[j] - others) / scale;
+            matrix[(j, count)] = 1.0;
+            matrix[(count, j)] = 1.0;
+        }
+        Self { factors: matrix.partial_piv_lu(), scale }
+    }
+
+    /// Forces on the islands (sum zero) for their mean displacements.
+    fn solve(&self, means: &[f64]) -> Vec<f64> {
+        let mut rhs: Vec<f64> = means.iter().map(|m| m / self.scale).collect();
+        rhs.push(0.0);
+        let n = rhs.len();
+        self.factors.solve_in_place(MatMut::from_column_major_slice_mut(&mut rhs, n, 1));
+        rhs.pop();
+        rhs
+    }
+}

@@ -1,0 +1,276 @@
+//! The sliding contact on nested grids.
+
+use super::active_set::{Contact, Goal};
+use super::edges::overhang;
+use super::error::ContactError;
+use super::half_space::HalfSpace;
+use super::solution::{ContactSolution, Fields};
+use crate::rubber::Rubber;
+use realfft::RealFftPlanner;
+
+/// Residual below which a contact counts as solved; see [`ContactSolution::residual`].
+pub const RESIDUAL_TOLERANCE: f64 = 1e-10;
+
+/// The iteration aims lower, so that what is reported stays below [`RESIDUAL_TOLERANCE`].
+const INNER_TOLERANCE: f64 = 2e-11;
+
+/// Grids are halved down to about this many points.
+const COARSEST_POINTS: usize = 64;
+
+/// The grids on which the contact can be asked for, and the rubber it is asked for.
+pub const POINTS_RANGE: std::ops::RangeInclusive<usize> = 8..=1 << 24;
+
+/// A rubber half-space sliding at constant speed over a rigid periodic profile.
+///
+/// Operators and transforms are kept, so that further pressures cost no set-up. Every solve
+/// starts from scratch on the coarsest grid: its result does not depend on what was solved
+/// before.
+///
+/// ```
+/// use asperity::contact::SlidingContact;
+/// use asperity::rubber::Rubber;
+/// use asperity::surface::{Wave, wave};
+///
+/// let period = 1e-3;
+/// let profile = wave::sample(&[Wave { wavelength: period, amplitude: 1e-5, phase: 0.0 }], period, 1024);
+/// let rubber = Rubber::elastic(3e6, 0.5);
+/// let mut contact = SlidingContact::new(&rubber, 0.01, period, &profile)?;
+/// let solution = contact.solve(5e4)?;
+/// // Westergaard: A/A0 = 2/π asin(sqrt(p/p*)) with p* = π E_r D / λ.
+/// let full = std::f64::consts::PI * 4e6 * 0.01;
+/// let exact = 2.0 / std::f64::consts::PI * (5e4_f64 / full).sqrt().asin();
+/// assert!((solution.contact_area_fraction - exact).abs() < 1e-3);
+/// assert!(solution.friction_coefficient.abs() < 1e-10); // elastic: no loss
+/// # Ok::<(), asperity::contact::ContactError>(())
+/// ```
+pub struct SlidingContact {
+    speed: f64,
+    grids: Vec<Grid>,
+    slopes: Vec<f64>,
+    height_range: f64,
+}
+
+/// One of the nested grids.
+struct Grid {
+    space: HalfSpace,
+    heights: Vec<f64>,
+    kernel: Vec<f64>,
+}
+
+impl SlidingContact {
+    /// Sets up the contact for a `speed` in m/s, a `period` in m and `heights` in m on
+    /// equidistant points of the period; their mean is removed.
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] for a period that is not positive, a speed that is not
+    /// finite or a number of points outside [`POINTS_RANGE`]; [`ContactError::BadHeight`].
+    pub fn new(
+        rubber: &Rubber,
+        speed: f64,
+        period: f64,
+        heights: &[f64],
+    ) -> Result<Self, ContactError> {
+        check(rubber, speed, period, heights)?;
+        let points = heights.len();
+        let mean = heights.iter().sum::<f64>() / points as f64;
+        let centred: Vec<f64> = heights.iter().map(|z| z - mean).collect();
+        let extremes = centred.iter().fold((0.0_f64, 0.0_f64), |(a, b), z| (a.min(*z), b.max(*z)));
+        let mut planner = RealFftPlanner::new();
+        let mut grids = vec![Grid::new(&mut planner, rubber, speed, period, centred)];
+        while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
+            let coarser = coarsen(&grids[grids.len() - 1].heights);
+            grids.push(Grid::new(&mut planner, rubber, speed, period, coarser));
+        }
+        let finest = &mut grids[0];
+        let slopes = finest.space.slope(&finest.heights);
+        grids.reverse();
+        Ok(Self { speed, grids, slopes, height_range: extremes.1 - extremes.0 })
+    }
+
+    /// Number of points of the finest grid.
+    pub fn points(&self) -> usize {
+        self.slopes.len()
+    }
+
+    /// The contact at the mean pressure `p` in Pa.
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] for a pressure that is not positive and finite;
+    /// [`ContactError::NotConverged`] if the residual stays above [`RESIDUAL_TOLERANCE`].
+    pub fn solve(&mut self, mean_pressure: f64) -> Result<ContactSolution, ContactError> {
+        if !(mean_pressure > 0.0 && mean_pressure.is_finite()) {
+            return Err(ContactError::OutOfRange {
+                quantity: "the mean pressure in Pa",
+                value: mean_pressure,
+                range: "positive and finite",
+            });
+        }
+        if let Some(solution) = self.full_contact(mean_pressure) {
+            return Ok(solution);
+        }
+        self.partial_contact(mean_pressure)
+    }
+
+    /// Peak-to-valley height of the profile in m.
+    pub fn height_range(&self) -> f64 {
+        self.height_range
+    }
+
+    /// In full contact the pressure follows from the heights at once; it is the solution if it is
+    /// nowhere a tension.
+    pub(super) fn full_contact(&mut self, mean_pressure: f64) -> Option<ContactSolution> {
+        let pressure = self.full_contact_pressure();
+        if pressure.iter().any(|t| mean_pressure + t < 0.0) {
+            return None;
+        }
+        let finest = self.grids.last_mut()?;
+        let fields = Fields {
+            mean_pressure,
+            mean_separation: 0.0,
+            pressure: pressure.iter().map(|t| mean_pressure + t).collect(),
+            heights: &finest.heights,
+            slopes: &self.slopes,
+        };
+        let mut solution = fields.evaluate(&mut finest.space);
+        // A pressure that just vanishes somewhere leaves no gap there either.
+        solution.contact_area_fraction = 1.0;
+        Some(solution)
+    }
+
+    /// The mean-free part of the pressure in full contact, in Pa.
+    pub(super) fn full_contact_pressure(&mut self) -> Vec<f64> {
+        let points = self.points();
+        let mut pressure = vec![0.0; points];
+        if let Some(finest) = self.grids.last_mut() {
+            finest.space.pressure(&finest.heights, &mut pressure);
+        }
+        pressure
+    }
+
+    fn partial_contact(&mut self, mean_pressure: f64) -> Result<ContactSolution, ContactError> {
+        let points = self.points();
+        let mut pressure = vec![mean_pressure; self.grids[0].heights.len()];
+        let mut applications = 0.0;
+        for grid in &mut self.grids {
+            let finest = grid.heights.len() == points;
+            let goal =
+                if finest { Goal::Solution { tolerance: INNER_TOLERANCE } } else { Goal::Start };
+            let mut contact = Contact {
+                displacement: vec![0.0; grid.heights.len()],
+                pressure: refine(&pressure, grid.heights.len()),
+                space: &mut grid.space,
+                heights: &grid.heights,
+                kernel: &grid.kernel,
+                mean_pressure,
+                mean_separation: 0.0,
+            };
+            let outcome = contact.solve(goal);
+            applications += (outcome.krylov_iterations * grid.heights.len()) as f64 / points as f64;
+            if !finest {
+                pressure = contact.pressure;
+                continue;
+            }
+            let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
+            let heights = &grid.heights;
+            let slopes = &self.slopes;
+            let fields = Fields { mean_pressure, mean_separation, pressure, heights, slopes };
+            let mut solution = fields.evaluate(&mut grid.space);
+            solution.iterations = outcome.iterations;
+            solution.operator_applications = applications;
+            if outcome.converged && solution.residual <= RESIDUAL_TOLERANCE {
+                return Ok(solution);
+            }
+            return Err(ContactError::NotConverged {
+                pressure: mean_pressure,
+                speed: self.speed,
+                points,
+                residual: solution.residual,
+                iterations: outcome.iterations,
+                changes: outcome.changes,
+            });
+        }
+        unreachable!("there is always a finest grid")
+    }
+}
+
+impl Grid {
+    fn new(
+        planner: &mut RealFftPlanner<f64>,
+        rubber: &Rubber,
+        speed: f64,
+        period: f64,
+        heights: Vec<f64>,
+    ) -> Self {
+        let points = heights.len();
+        let mut space = HalfSpace::new(planner, rubber, speed, period, points);
+        let mut unit = vec![0.0; points];
+        unit[0] = 1.0;
+        let mut kernel = vec![0.0; points];
+        space.displacement(&unit, &mut kernel);
+        Self { space, heights, kernel }
+    }
+}
+
+fn check(rubber: &Rubber, speed: f64, period: f64, heights: &[f64]) -> Result<(), ContactError> {
+    let out_of_range =
+        |quantity, value, range| Err(ContactError::OutOfRange { quantity, value, range });
+    if let Err(error) = rubber.validate() {
+        return Err(ContactError::Rubber(error));
+    }
+    if !(period > 0.0 && period.is_finite()) {
+        return out_of_range("the period in m", period, "positive and finite");
+    }
+    if !speed.is_finite() {
+        return out_of_range("the speed in m/s", speed, "finite");
+    }
+    if !POINTS_RANGE.contains(&heights.len()) {
+        return out_of_range("the number of points", heights.len() as f64, "8 to 16777216");
+    }
+    match heights.iter().position(|z| !z.is_finite()) {
+        Some(index) => Err(ContactError::BadHeight { index, value: heights[index] }),
+        None => Ok(()),
+    }
+}
+
+/// The profile on half as many points: every second one of an even grid, between two points of an
+/// odd one.
+fn coarsen(heights: &[f64]) -> Vec<f64> {
+    resample(heights, heights.len() / 2)
+}
+
+/// The pressure on a finer grid of the same period, linear between points and without those new
+/// points that lie beyond the contact edge as read on the coarse grid.
+fn refine(pressure: &[f64], points: usize) -> Vec<f64> {
+    let n = pressure.len();
+    let mut fine = resample(pressure, points);
+    if points == n {
+        return fine;
+    }
+    for (i, t) in fine.iter_mut().enumerate() {
+        let position = (i * n) as f64 / points as f64;
+        let left = position as usize;
+        let from_left = position - left as f64;
+        let at = |k: usize| pressure[k % n];
+        let beyond = match (at(left) > 0.0, at(left + 1) > 0.0) {
+            (true, false) => from_left > overhang(at(left + n - 1), at(left)),
+            (false, true) => 1.0 - from_left > overhang(at(left + 2), at(left + 1)),
+            _ => false,
+        };
+        if beyond {
+            *t = 0.0;
+        }
+    }
+    fine
+}
+
+fn resample(values: &[f64], points: usize) -> Vec<f64> {
+    let n = values.len();
+    (0..points)
+        .map(|i| {
+            let position = (i * n) as f64 / points as f64;
+            let left = position as usize;
+            let weight = position - left as f64;
+            (1.0 - weight) * values[left] + weight * values[(left + 1) % n]
+        })
+        .collect()
+}

@@ -1,0 +1,129 @@
+//! Generalised Maxwell model of a linear viscoelastic solid.
+
+use rustfft::num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// A spring `E_k` in series with a dashpot `E_k τ_k`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct MaxwellBranch {
+    /// Modulus E_k in Pa.
+    pub modulus: f64,
+    /// Relaxation time τ_k in s.
+    pub relaxation_time: f64,
+}
+
+/// Generalised Maxwell model with a constant Poisson ratio (thesis 2.2.5-6):
+/// `E(ω) = E_inf + Σ_k E_k i ω τ_k / (1 + i ω τ_k)`.
+///
+/// Without branches it is an elastic solid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rubber {
+    /// Name under which tables quote it.
+    pub name: String,
+    /// Relaxed modulus E_inf in Pa.
+    pub equilibrium_modulus: f64,
+    /// Maxwell branches in parallel with the equilibrium spring.
+    pub branches: Vec<MaxwellBranch>,
+    /// Poisson ratio, the same at all frequencies.
+    pub poisson_ratio: f64,
+}
+
+/// Why a set of numbers is not a rubber.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RubberError {
+    /// A modulus or time that is not positive and finite.
+    #[error("rubber {rubber}: {quantity} is {value}, it must be positive and finite")]
+    NotPositive {
+        /// Name of the rubber.
+        rubber: String,
+        /// Which number.
+        quantity: String,
+        /// Its value in SI.
+        value: f64,
+    },
+    /// A Poisson ratio that plane strain does not allow.
+    #[error("rubber {rubber}: poisson_ratio is {value}, it must lie between 0 and 0.5")]
+    PoissonRatio {
+        /// Name of the rubber.
+        rubber: String,
+        /// The value.
+        value: f64,
+    },
+}
+
+impl Rubber {
+    /// An elastic solid: modulus in Pa.
+    pub fn elastic(modulus: f64, poisson_ratio: f64) -> Self {
+        Self {
+            name: "elastic".into(),
+            equilibrium_modulus: modulus,
+            branches: Vec::new(),
+            poisson_ratio,
+        }
+    }
+
+    /// Checks that every modulus and time is positive and the Poisson ratio is in `[0, 0.5]`.
+    ///
+    /// # Errors
+    /// Names the first number that is not.
+    pub fn validate(&self) -> Result<(), RubberError> {
+        let not_positive = |quantity: String, value: f64| RubberError::NotPositive {
+            rubber: self.name.clone(),
+            quantity,
+            value,
+        };
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        if !positive(self.equilibrium_modulus) {
+            return Err(not_positive("the equilibrium modulus".into(), self.equilibrium_modulus));
+        }
+        for (k, branch) in self.branches.iter().enumerate() {
+            if !positive(branch.modulus) {
+                return Err(not_positive(
+                    format!("the modulus of branch {}", k + 1),
+                    branch.modulus,
+                ));
+            }
+            if !positive(branch.relaxation_time) {
+                return Err(not_positive(
+                    format!("the relaxation time of branch {}", k + 1),
+                    branch.relaxation_time,
+                ));
+            }
+        }
+        if !(0.0..=0.5).contains(&self.poisson_ratio) {
+            return Err(RubberError::PoissonRatio {
+                rubber: self.name.clone(),
+                value: self.poisson_ratio,
+            });
+        }
+        Ok(())
+    }
+
+    /// Complex modulus E(ω) in Pa at the angular frequency ω in rad/s; its real part is the
+    /// storage modulus, its imaginary part the loss modulus.
+    pub fn complex_modulus(&self, angular_frequency: f64) -> Complex64 {
+        let mut modulus = Complex64::new(self.equilibrium_modulus, 0.0);
+        for branch in &self.branches {
+            let wt = angular_frequency * branch.relaxation_time;
+            // i wt / (1 + i wt), written so that a huge wt does not overflow.
+            let inverse = 1.0 / wt;
+            let weight = if wt == 0.0 {
+                Complex64::ZERO
+            } else {
+                Complex64::new(1.0, inverse) / (1.0 + inverse * inverse)
+            };
+            modulus += branch.modulus * weight;
+        }
+        modulus
+    }
+
+    /// Complex reduced modulus `E_r(ω) = E(ω) / (1 - ν²)` of plane strain, in Pa.
+    pub fn reduced_modulus(&self, angular_frequency: f64) -> Complex64 {
+        self.complex_modulus(angular_frequency) / (1.0 - self.poisson_ratio.powi(2))
+    }
+
+    /// Glassy modulus `E_inf + Σ E_k` in Pa, the limit of infinite frequency.
+    pub fn glassy_modulus(&self) -> f64 {
+        self.equilibrium_modulus + self.branches.iter().map(|b| b.modulus).sum::<f64>()
+    }
+}

@@ -1,0 +1,5 @@
+//! Rubber: moduli over frequency.
+
+mod maxwell;
+
+pub use maxwell::{MaxwellBranch, Rubber, RubberError};
