@@ -7,6 +7,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
+//! | [`scans`] | readers of instrument files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
 //!
 //! # Conventions
@@ -16,4 +17,5 @@
 //! are NaN and nothing else is.
 
 pub mod numerics;
+pub mod scans;
 pub mod surface;
