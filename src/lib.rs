@@ -7,6 +7,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
+//! | [`scans`] | readers of instrument files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
 //!
 //! # Conventions
@@ -18,4 +19,5 @@
 pub mod contact;
 pub mod numerics;
 pub mod rubber;
+pub mod scans;
 pub mod surface;

@@ -1,0 +1,101 @@
+//! What can be wrong with a scan file.
+
+use std::path::Path;
+
+/// A scan file that cannot be read: where, what, and what to do.
+#[derive(Debug, thiserror::Error)]
+#[error("{file}{}: {problem}", place(.line, .column))]
+pub struct ScanError {
+    /// Path or name of the file.
+    pub file: String,
+    /// Line in the file, counted from 1, where the problem has one.
+    pub line: Option<usize>,
+    /// Column (its name, else its number), where the problem has one.
+    pub column: Option<String>,
+    /// What is wrong.
+    #[source]
+    pub problem: ScanProblem,
+}
+
+impl ScanError {
+    /// The same error, told of the file at `path`.
+    pub(crate) fn in_file(self, path: &Path) -> Self {
+        Self { file: path.display().to_string(), ..self }
+    }
+}
+
+fn place(line: &Option<usize>, column: &Option<String>) -> String {
+    let line = line.map(|line| format!(", line {line}")).unwrap_or_default();
+    let column = column.as_ref().map(|column| format!(", column {column}")).unwrap_or_default();
+    line + &column
+}
+
+/// What is wrong with a scan file or with its description.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScanProblem {
+    #[error("cannot be read: {0}")]
+    Io(#[from] std::io::Error),
+    #[error("is a directory; give the scan file itself")]
+    Directory,
+    #[error("the key `{key}` of its description {reason}")]
+    Description { key: &'static str, reason: String },
+    #[error("the file is empty")]
+    Empty,
+    #[error("holds binary data, not text; check the file type, or set `encoding` (utf-16le, ...)")]
+    Binary,
+    #[error("bytes that are no {encoding}; set `encoding`, for instance to windows-1252")]
+    Encoding { encoding: &'static str },
+    #[error("has {lines} lines, fewer than skip_lines = {skip_lines}")]
+    SkippedAll { lines: usize, skip_lines: usize },
+    #[error("no line starts with the marker `{marker}` (skip_until)")]
+    NoMarker { marker: String },
+    #[error("there is no column `{wanted}`; the columns are {present}; check `separator` as well")]
+    UnknownColumn { wanted: String, present: String },
+    #[error("{count} columns are named `{wanted}`; give the number of the column")]
+    AmbiguousColumn { wanted: String, count: usize },
+    #[error("holds numbers where the column names should be; set `header = false`")]
+    HeaderIsData,
+    #[error("the record cannot be split into cells: {0}")]
+    Record(#[from] csv::Error),
+    #[error("{cells} cells under {columns} column names; check `separator` and `decimal_mark`")]
+    CellCount { cells: usize, columns: usize },
+    #[error("ends after {cells} cells, {needed} are needed; complete or delete the line")]
+    ShortLine { cells: usize, needed: usize },
+    #[error("the file breaks off in the middle of its last line; copy it again")]
+    Truncated,
+    #[error("a blank line between heights; without positions mark a missing height, say by NaN")]
+    BlankLine,
+    #[error("`{text}` is not a number{hint}")]
+    NotANumber { text: String, hint: &'static str },
+    #[error("`{text}` has the wrong decimal mark; set `decimal_mark = \"{mark}\"`")]
+    DecimalMark { text: String, mark: char },
+    #[error(
+        "`{text}` is infinite or too large for a number; list it in `missing` if it marks a gap"
+    )]
+    Infinite { text: String },
+    #[error(
+        "the position {text} comes after {previous}; sort the file or cut it where it turns back"
+    )]
+    NotIncreasing { text: String, previous: String },
+    #[error(
+        "the position {text} is there twice; choose the column of positions, or average the points"
+    )]
+    Repeated { text: String },
+    #[error(
+        "too few points: {rows} where at least 2 are needed; check `skip_lines`, `skip_until` and `comment`"
+    )]
+    TooFewPoints { rows: usize },
+    #[error("all {points} heights are missing; check `z_column` and `missing`")]
+    AllMissing { points: usize },
+    #[error(
+        "nothing is left: the track is {length_mm} mm long, cut_start_mm + cut_end_mm is {cut_mm} mm"
+    )]
+    AllCut { length_mm: f64, cut_mm: f64 },
+    #[error("points {spacing_mm} mm apart are no scan of texture (1e-6 to 10 mm); check `{key}`")]
+    AbsurdSpacing { spacing_mm: f64, key: &'static str },
+    #[error(
+        "heights from {lowest_m} m to {highest_m} m are no road; check `z_unit`, or list a marker of missing points in `missing`"
+    )]
+    AbsurdHeights { lowest_m: f64, highest_m: f64 },
+}

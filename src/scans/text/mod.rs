@@ -1,0 +1,208 @@
+//! Text files of one point per line.
+
+mod columns;
+mod number;
+mod rows;
+#[cfg(test)]
+mod tests;
+
+use crate::scans::decode::{Located, body_start, decode};
+use crate::scans::{ScanError, ScanProblem, TextFormat};
+use crate::surface::RawScan;
+use columns::{Columns, written_cells};
+use csv::StringRecord;
+use number::Cells;
+use rows::Rows;
+use statrs::statistics::{Data, OrderStatistics};
+use std::path::Path;
+
+/// Reads the line scan in a text file; the scan is named for the file's stem.
+///
+/// # Errors
+/// [`ScanError`] with the path, the line and the column.
+pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError> {
+    let whole =
+        |problem| ScanError { file: path.display().to_string(), line: None, column: None, problem };
+    if path.is_dir() {
+        return Err(whole(ScanProblem::Directory));
+    }
+    let bytes = std::fs::read(path).map_err(|error| whole(error.into()))?;
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    parse_text(&name, &bytes, format).map_err(|error| error.in_file(path))
+}
+
+/// Reads the line scan in the bytes of a text file. Positions and heights are converted to
+/// metres, missing heights are NaN; positions grow strictly from line to line.
+///
+/// # Errors
+/// [`ScanError`] that tells of the file as `name`.
+pub fn parse_text(name: &str, bytes: &[u8], format: &TextFormat) -> Result<RawScan, ScanError> {
+    let error = |line, column, problem| ScanError { file: name.to_owned(), line, column, problem };
+    let whole = |problem| error(None, None, problem);
+    let located = |(line, problem): Located| error(line, None, problem);
+
+    format.validate().map_err(whole)?;
+    let text = decode(bytes, &format.encoding).map_err(located)?;
+    let body = body_start(&text, format).map_err(whole)?;
+    let points = read_points(&text, body, format)
+        .map_err(|failure| error(failure.line, failure.column, failure.problem))?;
+    let scan = to_metres(name, points, format);
+    check_plausible(&scan, format).map_err(whole)?;
+    let scan = cut_ends(scan, format).map_err(whole)?;
+    if scan.heights.iter().all(|height| height.is_nan()) {
+        return Err(whole(ScanProblem::AllMissing { points: scan.heights.len() }));
+    }
+    Ok(scan)
+}
+
+/// The numbers of a file in its own units; no positions where it holds heights only.
+#[derive(Default)]
+struct Points {
+    positions: Vec<f64>,
+    heights: Vec<f64>,
+}
+
+struct Failure {
+    line: Option<usize>,
+    column: Option<String>,
+    problem: ScanProblem,
+}
+
+fn read_points(text: &str, body: usize, format: &TextFormat) -> Result<Points, Failure> {
+    let cells = Cells::new(format);
+    let mut rows = Rows::new(text, body, format);
+    let mut record = StringRecord::new();
+    let on_line = |rows: &Rows, problem| Failure { line: Some(rows.line()), column: None, problem };
+
+    if format.header && !rows.read(&mut record).map_err(|problem| on_line(&rows, problem))? {
+        return Err(Failure {
+            line: None,
+            column: None,
+            problem: ScanProblem::TooFewPoints { rows: 0 },
+        });
+    }
+    let header = format.header.then_some(&record);
+    let columns =
+        Columns::resolve(format, header, &cells).map_err(|problem| on_line(&rows, problem))?;
+
+    let mut points = Points::default();
+    while rows.read(&mut record).map_err(|problem| on_line(&rows, problem))? {
+        // Spreadsheets end a file with lines of separators only.
+        if columns.x.is_some() && written_cells(&record) == 0 {
+            continue;
+        }
+        columns.check(&record).map_err(|problem| {
+            let truncated =
+                matches!(problem, ScanProblem::ShortLine { .. }) && rows.is_unfinished_line();
+            on_line(&rows, if truncated { ScanProblem::Truncated } else { problem })
+        })?;
+        if columns.x.is_none() && !points.heights.is_empty() && rows.follows_blank_line() {
+            return Err(on_line(&rows, ScanProblem::BlankLine));
+        }
+        push(&mut points, &record, &columns, &cells).map_err(|(place, problem)| Failure {
+            line: Some(rows.line()),
+            column: Some(columns.describe(place)),
+            problem: if points.heights.is_empty() { hint_at_header(problem) } else { problem },
+        })?;
+    }
+    match points.heights.len() {
+        rows @ (0 | 1) => {
+            Err(Failure { line: None, column: None, problem: ScanProblem::TooFewPoints { rows } })
+        }
+        _ => Ok(points),
+    }
+}
+
+/// Appends the point of one line; the error comes with the place of the column, from 0.
+fn push(
+    points: &mut Points,
+    record: &StringRecord,
+    columns: &Columns,
+    cells: &Cells,
+) -> Result<(), (usize, ScanProblem)> {
+    if let Some(x) = columns.x {
+        let position = cells.position(&record[x]).map_err(|problem| (x, problem))?;
+        if let Some(&previous) = points.positions.last() {
+            let text = || record[x].trim().to_owned();
+            if position == previous {
+                return Err((x, ScanProblem::Repeated { text: text() }));
+            }
+            if position < previous {
+                let previous = previous.to_string();
+                return Err((x, ScanProblem::NotIncreasing { text: text(), previous }));
+            }
+        }
+        points.positions.push(position);
+    }
+    let height = cells.height(&record[columns.z]).map_err(|problem| (columns.z, problem))?;
+    points.heights.push(height);
+    Ok(())
+}
+
+/// Words on the first line of points are most likely the names of the columns.
+fn hint_at_header(problem: ScanProblem) -> ScanProblem {
+    match problem {
+        ScanProblem::NotANumber { text, .. } => ScanProblem::NotANumber {
+            text,
+            hint: "; set `header`, `skip_lines` or `skip_until` if this line is no point yet",
+        },
+        other => other,
+    }
+}
+
+fn to_metres(name: &str, points: Points, format: &TextFormat) -> RawScan {
+    use crate::scans::description::LengthUnit::{M, Um};
+    // `validate` has seen that the units are there where they are needed.
+    let x_unit = format.x_unit.unwrap_or(M);
+    let z_unit = format.z_unit.unwrap_or(M);
+    let sign = if format.invert_z { -1.0 } else { 1.0 };
+    let mut positions = points.positions;
+    positions.iter_mut().for_each(|position| *position = x_unit.metres(*position));
+    if let Some(spacing) = format.x_spacing_um {
+        positions = (0..points.heights.len()).map(|i| Um.metres(i as f64 * spacing)).collect();
+    }
+    let mut heights = points.heights;
+    heights.iter_mut().for_each(|height| *height = sign * z_unit.metres(*height));
+    RawScan { name: name.to_owned(), positions, heights }
+}
+
+/// Refuses numbers that only a wrong unit, column or marker explains.
+fn check_plausible(scan: &RawScan, format: &TextFormat) -> Result<(), ScanProblem> {
+    // An atomic force microscope steps by a nanometre; texture ends at wavelengths of 50 mm.
+    const SPACINGS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e-2;
+    // No profilometer of texture has a range of a metre.
+    const LARGEST_RANGE_M: f64 = 1.0;
+
+    let steps: Vec<f64> = scan.positions.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let spacing = Data::new(steps).median();
+    if !SPACINGS_M.contains(&spacing) {
+        let key = if format.x_spacing_um.is_some() { "x_spacing_um" } else { "x_unit" };
+        return Err(ScanProblem::AbsurdSpacing { spacing_mm: spacing * 1e3, key });
+    }
+    // `f64::min` and `max` pass over NaN.
+    let lowest_m = scan.heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest_m = scan.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if highest_m - lowest_m > LARGEST_RANGE_M {
+        return Err(ScanProblem::AbsurdHeights { lowest_m, highest_m });
+    }
+    Ok(())
+}
+
+/// Drops the points within `cut_start_mm` of the first and `cut_end_mm` of the last.
+fn cut_ends(mut scan: RawScan, format: &TextFormat) -> Result<RawScan, ScanProblem> {
+    let (Some(&first), Some(&last)) = (scan.positions.first(), scan.positions.last()) else {
+        return Err(ScanProblem::TooFewPoints { rows: 0 });
+    };
+    let (from, to) = (first + format.cut_start_mm / 1e3, last - format.cut_end_mm / 1e3);
+    let start = scan.positions.partition_point(|&position| position < from);
+    let end = scan.positions.partition_point(|&position| position <= to);
+    if end < start + 2 {
+        let cut_mm = format.cut_start_mm + format.cut_end_mm;
+        return Err(ScanProblem::AllCut { length_mm: (last - first) * 1e3, cut_mm });
+    }
+    for values in [&mut scan.positions, &mut scan.heights] {
+        values.truncate(end);
+        values.drain(..start);
+    }
+    Ok(scan)
+}
