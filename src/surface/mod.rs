@@ -1,9 +1,11 @@
 //! A scanned surface: line scans, what they say of the roughness, and sines that stand for them.
 
+pub mod correlation;
 pub mod parameters;
 pub mod scan;
 pub mod wave;
 
+pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use parameters::RoughnessParameters;
 pub use scan::{LineScan, RawScan};
 pub use wave::{SineScale, Wave};
