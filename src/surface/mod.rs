@@ -3,9 +3,11 @@
 pub mod correlation;
 pub mod parameters;
 pub mod scan;
+pub mod spectrum;
 pub mod wave;
 
 pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use parameters::RoughnessParameters;
 pub use scan::{LineScan, RawScan};
+pub use spectrum::PowerSpectrum;
 pub use wave::{SineScale, Wave};
