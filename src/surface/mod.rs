@@ -3,11 +3,13 @@
 pub mod correlation;
 pub mod parameters;
 pub mod scan;
+pub mod self_affine;
 pub mod spectrum;
 pub mod wave;
 
 pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use parameters::RoughnessParameters;
 pub use scan::{LineScan, RawScan};
+pub use self_affine::SelfAffineFit;
 pub use spectrum::PowerSpectrum;
 pub use wave::{SineScale, Wave};
