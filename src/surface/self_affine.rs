@@ -1,0 +1,273 @@
+//! Self-affine description of a height-difference correlation (thesis 3.3.2-3):
+//!
+//! ```text
+//! C(s) = xi_perp^2 (s / xi_par)^(2 H)  for s <= xi_par,   xi_perp^2  above
+//! ```
+//!
+//! In `x = log10 s`, `y = log10 C` this is a hinge, `y = a + 2 H min(0, x - c)`. For every pair of
+//! neighbouring lags that may hold the hinge `c` the rest is linear, so the global least-squares
+//! solution is found by looking at all of them; there is no start and no iteration.
+
+use super::correlation::{
+    CorrelationError, CorrelationSample, HeightDifferenceCorrelation, check_equal_spacing,
+    log_spaced_lags, pooled_value,
+};
+use crate::numerics::statistics::student_t_975;
+use thiserror::Error;
+
+/// Fewest lags on the slope, and in all: two would meet any slope exactly.
+const FEWEST_ON_SLOPE: usize = 3;
+
+/// Limits of a two-sided 95 % confidence interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConfidenceInterval {
+    /// Lower limit.
+    pub lower: f64,
+    /// Upper limit.
+    pub upper: f64,
+}
+
+/// The lags a fit takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LagRange {
+    /// Shortest lag in metres.
+    pub shortest: f64,
+    /// Longest lag in metres.
+    pub longest: f64,
+    /// Lags a decade; fewer where the scan has no more.
+    pub per_decade: usize,
+}
+
+/// Self-affine parameters of an average correlation.
+///
+/// Neighbouring lags of a scan are correlated, so their residuals say little of the uncertainty.
+/// The intervals come from the spread over scans: a jackknife that leaves out one scan at a time,
+/// Student's t with one degree of freedom less than scans, in `log10` for the two lengths. `None`
+/// for fewer than three scans.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SelfAffineFit {
+    /// Hurst exponent H; the fractal dimension of the profile is `2 - H`.
+    pub hurst_exponent: f64,
+    /// Interval of H.
+    pub hurst_exponent_95: Option<ConfidenceInterval>,
+    /// Lateral correlation length ξ∥ in metres: the lag of the hinge.
+    pub lateral_length: f64,
+    /// Interval of ξ∥ in metres.
+    pub lateral_length_95: Option<ConfidenceInterval>,
+    /// Vertical correlation length ξ⊥ in metres: the root of the plateau.
+    pub vertical_length: f64,
+    /// Interval of ξ⊥ in metres.
+    pub vertical_length_95: Option<ConfidenceInterval>,
+    /// Whether a plateau was found: two lags at least lie above ξ∥. If not, both lengths are lower
+    /// bounds.
+    pub plateau_found: bool,
+    /// Root mean square of the residuals in `log10 C`.
+    pub rms_residual: f64,
+    /// The lags taken: the shortest and the longest, and how many.
+    pub range: LagRange,
+    /// Number of lags taken.
+    pub lags: usize,
+    /// Number of scans.
+    pub scans: usize,
+}
+
+/// A self-affine fit that is not possible.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SelfAffineError {
+    /// Too few lags.
+    #[error(
+        "{lags} lags between {shortest} m and {longest} m, at least {FEWEST_ON_SLOPE} are needed; widen the range"
+    )]
+    TooFewLags {
+        /// Number of lags in the range.
+        lags: usize,
+        /// Shortest lag asked for in metres.
+        shortest: f64,
+        /// Longest lag asked for in metres.
+        longest: f64,
+    },
+    /// No logarithm.
+    #[error(
+        "the correlation at lag {lag} m is {value} m2, no positive number; is the scan flat there?"
+    )]
+    NotPositive {
+        /// The lag in metres.
+        lag: f64,
+        /// The correlation in m².
+        value: f64,
+    },
+    /// The correlation does not grow with the lag.
+    #[error(
+        "the fit gave H = {hurst_exponent}, the correlation does not grow with the lag; shorten the range"
+    )]
+    NotGrowing {
+        /// The Hurst exponent found.
+        hurst_exponent: f64,
+    },
+    /// The scans cannot be pooled.
+    #[error(transparent)]
+    Correlation(#[from] CorrelationError),
+}
+
+/// Fit the average of the scans' correlations over log-spaced lags; intervals by jackknife.
+///
+/// `range` limits the lags; all lags that every scan has, 20 a decade, without it.
+///
+/// # Errors
+/// No scans, scans of unequal spacing, too few lags or a correlation that is not positive or does
+/// not grow.
+pub fn fit_self_affine(
+    scans: &[HeightDifferenceCorrelation],
+    range: Option<LagRange>,
+) -> Result<SelfAffineFit, SelfAffineError> {
+    check_equal_spacing(scans)?;
+    let first = scans.first().ok_or(CorrelationError::NoScans)?;
+    let longest = scans.iter().map(|scan| scan.maximum_lag()).min().unwrap_or(0);
+    let range = range.unwrap_or(LagRange {
+        shortest: first.spacing,
+        longest: longest as f64 * first.spacing,
+        per_decade: 20,
+    });
+    let lags = lags_within(range, longest, first.spacing);
+    let fit = |left_out| Hinge::fit(&pooled(scans, &lags, left_out), range);
+    let points = pooled(scans, &lags, None);
+    let hinge = Hinge::fit(&points, range)?;
+    let intervals = match scans.len() {
+        0..3 => None,
+        count => Some(jackknife(&(0..count).map(|i| fit(Some(i))).collect::<Result<Vec<_>, _>>()?)),
+    };
+    let around = |which: usize, centre: f64, map: fn(f64) -> f64| {
+        let half = intervals?[which];
+        Some(ConfidenceInterval { lower: map(centre - half), upper: map(centre + half) })
+    };
+    let length = |logarithm: f64| 10_f64.powf(logarithm);
+    let [hurst, lateral, vertical] = hinge.parameters();
+    Ok(SelfAffineFit {
+        hurst_exponent: hurst,
+        hurst_exponent_95: around(0, hurst, |h| h),
+        lateral_length: length(lateral),
+        lateral_length_95: around(1, lateral, length),
+        vertical_length: length(vertical),
+        vertical_length_95: around(2, vertical, length),
+        plateau_found: points[points.len() - 2].lag.log10() > lateral,
+        rms_residual: (hinge.squares / points.len() as f64).sqrt(),
+        range: LagRange {
+            shortest: points[0].lag,
+            longest: points[points.len() - 1].lag,
+            per_decade: range.per_decade,
+        },
+        lags: points.len(),
+        scans: scans.len(),
+    })
+}
+
+fn lags_within(range: LagRange, longest: usize, spacing: f64) -> Vec<usize> {
+    // Half a spacing either way keeps a limit that falls on a lag.
+    let within = |lag: &usize| {
+        let s = *lag as f64 * spacing;
+        s > range.shortest - spacing / 2.0 && s < range.longest + spacing / 2.0
+    };
+    log_spaced_lags(longest, range.per_decade).into_iter().filter(within).collect()
+}
+
+/// The average correlation at some lags, of all scans or all but one.
+fn pooled(
+    scans: &[HeightDifferenceCorrelation],
+    lags: &[usize],
+    left_out: Option<usize>,
+) -> Vec<CorrelationSample> {
+    let kept = || scans.iter().enumerate().filter(|(i, _)| Some(*i) != left_out).map(|(_, s)| s);
+    let at = |&lag: &usize| CorrelationSample {
+        lag: lag as f64 * scans[0].spacing,
+        value: pooled_value(kept(), lag),
+        pairs: kept().map(|scan| scan.pairs[lag]).sum(),
+    };
+    lags.iter().map(at).filter(|sample| sample.pairs > 0).collect()
+}
+
+/// Half widths of the 95 % intervals from the estimates without one scan each:
+/// `t sqrt((n - 1)/n sum (theta_i - mean)^2)`.
+fn jackknife(fits: &[Hinge]) -> [f64; 3] {
+    let n = fits.len() as f64;
+    let estimates: Vec<[f64; 3]> = fits.iter().map(Hinge::parameters).collect();
+    std::array::from_fn(|which| {
+        let mean = estimates.iter().map(|e| e[which]).sum::<f64>() / n;
+        let squares = estimates.iter().map(|e| (e[which] - mean).powi(2)).sum::<f64>();
+        student_t_975(n - 1.0) * ((n - 1.0) / n * squares).sqrt()
+    })
+}
+
+/// `y = level + slope min(0, x - hinge)` with its sum of squared residuals.
+#[derive(Debug, Clone, Copy)]
+struct Hinge {
+    level: f64,
+    slope: f64,
+    hinge: f64,
+    squares: f64,
+}
+
+impl Hinge {
+    /// H, log10 ξ∥, log10 ξ⊥.
+    fn parameters(&self) -> [f64; 3] {
+        [self.slope / 2.0, self.hinge, self.level / 2.0]
+    }
+
+    fn fit(samples: &[CorrelationSample], range: LagRange) -> Result<Self, SelfAffineError> {
+        if samples.len() < FEWEST_ON_SLOPE {
+            let LagRange { shortest, longest, .. } = range;
+            return Err(SelfAffineError::TooFewLags { lags: samples.len(), shortest, longest });
+        }
+        if let Some(&CorrelationSample { lag, value, .. }) =
+            samples.iter().find(|sample| sample.value.is_nan() || sample.value <= 0.0)
+        {
+            return Err(SelfAffineError::NotPositive { lag, value });
+        }
+        let x: Vec<f64> = samples.iter().map(|sample| sample.lag.log10()).collect();
+        let y: Vec<f64> = samples.iter().map(|sample| sample.value.log10()).collect();
+        let on_a_lag = (FEWEST_ON_SLOPE..=x.len()).map(|left| Self::at(x[left - 1], &x, &y));
+        // One lag alone above the hinge would be met exactly whatever it is: no plateau.
+        let in_between = FEWEST_ON_SLOPE..(x.len() - 1).max(FEWEST_ON_SLOPE);
+        let candidates = on_a_lag.chain(in_between.map(|left| Self::between(left, &x, &y)));
+        let best = candidates
+            .filter(|candidate| candidate.squares.is_finite())
+            .min_by(|a, b| a.squares.total_cmp(&b.squares))
+            .filter(|best| best.slope > 0.0);
+        best.ok_or_else(|| SelfAffineError::NotGrowing {
+            hurst_exponent: Self::at(x[x.len() - 1], &x, &y).slope / 2.0,
+        })
+    }
+
+    /// Best fit with the hinge at a given place.
+    fn at(hinge: f64, x: &[f64], y: &[f64]) -> Self {
+        let u: Vec<f64> = x.iter().map(|x| (x - hinge).min(0.0)).collect();
+        let (level, slope) = line(&u, y);
+        Self::with_squares(level, slope, hinge, x, y)
+    }
+
+    /// Best fit with the first `left` points on the slope and the others on the plateau. Their
+    /// free fits are independent; the residual counts the points as the hinge assigns them, so a
+    /// crossing outside its interval is judged for what it is.
+    fn between(left: usize, x: &[f64], y: &[f64]) -> Self {
+        let (offset, slope) = line(&x[..left], &y[..left]);
+        let level = y[left..].iter().sum::<f64>() / (y.len() - left) as f64;
+        Self::with_squares(level, slope, (level - offset) / slope, x, y)
+    }
+
+    fn with_squares(level: f64, slope: f64, hinge: f64, x: &[f64], y: &[f64]) -> Self {
+        let residual = |(x, y): (&f64, &f64)| (level + slope * (x - hinge).min(0.0) - y).powi(2);
+        let squares = x.iter().zip(y).map(residual).sum();
+        Self { level, slope, hinge, squares }
+    }
+}
+
+/// Intercept and slope of the least-squares line.
+fn line(x: &[f64], y: &[f64]) -> (f64, f64) {
+    let n = x.len() as f64;
+    let (mean_x, mean_y) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+    let xx: f64 = x.iter().map(|x| (x - mean_x).powi(2)).sum();
+    let xy: f64 = x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    (mean_y - xy / xx * mean_x, xy / xx)
+}
+
+#[cfg(test)]
+mod tests;
