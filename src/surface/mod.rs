@@ -11,6 +11,7 @@ pub mod scan;
 pub mod self_affine;
 pub mod sine_fit;
 pub mod spectrum;
+pub mod synthesis;
 pub mod wave;
 pub mod window;
 
@@ -22,4 +23,5 @@ pub use scan::{LineScan, RawScan};
 pub use self_affine::SelfAffineFit;
 pub use sine_fit::SineFit;
 pub use spectrum::PowerSpectrum;
+pub use synthesis::SyntheticAsphalt;
 pub use wave::{SineScale, Wave};
