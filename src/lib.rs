@@ -6,6 +6,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`artifact`] | tables (Arrow), arrays (HDF5), manifests, digests and the folder of a run |
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
 //!
@@ -15,5 +16,6 @@
 //! positive in compression; a positive friction coefficient opposes the motion. Missing heights
 //! are NaN and nothing else is.
 
+pub mod artifact;
 pub mod numerics;
 pub mod surface;
