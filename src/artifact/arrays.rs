@@ -20,7 +20,7 @@ const FORMAT: &str = "HDF5 file of arrays";
 const COMPRESS_FROM_VALUES: usize = 1024 / size_of::<f64>();
 /// 128 KiB: small against the chunk cache of 1 MiB, large against the overhead of a chunk.
 const CHUNK_VALUES: usize = 16_384;
-/// Above level 4 deflate gains a per cent or two in size on measured heights and takes far longer.
+/// Of 9; files of tens of megabytes do not deserve the time of the higher levels.
 const DEFLATE_LEVEL: u8 = 4;
 
 /// Value of an attribute.

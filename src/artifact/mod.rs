@@ -30,7 +30,8 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use arrays::{ArrayDataset, ArraysInfo, Attribute, arrays_info, read_arrays, write_arrays};
+pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo};
+pub use arrays::{arrays_info, read_arrays, write_arrays};
 pub use columns::{Column, ColumnType, Row, columns};
 pub use digest::Digest;
 pub use error::ArtifactError;

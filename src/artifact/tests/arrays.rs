@@ -92,7 +92,7 @@ fn everything_a_dataset_has_is_content() {
         |d| d.name.push('x'),
         |d| d.unit = "mm".into(),
         |d| d.values[0] = 0.0,
-        |d| drop(d.values.pop()),
+        |d| d.values.truncate(1),
         |d| drop(d.attributes.insert("seed".into(), Attribute::Float(1.0))),
         |d| drop(d.attributes.remove("remark")),
     ];

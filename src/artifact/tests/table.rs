@@ -101,14 +101,14 @@ fn only_what_is_not_volatile_changes_the_content_digest() {
 #[test]
 fn a_nan_is_refused_by_column_and_row() {
     let (_folder, path) = place();
-    let changes: [(&str, fn(&mut Sample)); 3] = [
-        ("pressure_mpa", |row| row.pressure_mpa = f64::NAN),
-        ("friction", |row| row.friction = Some(f64::NAN)),
-        ("amplitudes_mm", |row| row.amplitudes_mm = vec![1.0, f64::NAN]),
+    let valid = || samples().swap_remove(1);
+    let cases = [
+        ("pressure_mpa", Sample { pressure_mpa: f64::NAN, ..valid() }),
+        ("friction", Sample { friction: Some(f64::NAN), ..valid() }),
+        ("amplitudes_mm", Sample { amplitudes_mm: vec![1.0, f64::NAN], ..valid() }),
     ];
-    for (column, change) in changes {
-        let mut rows = samples();
-        change(&mut rows[1]);
+    for (column, row) in cases {
+        let rows = [valid(), row];
         let message = write_table(&path, &rows, &Metadata::new()).unwrap_err().to_string();
         assert!(message.contains(&format!("column {column}")), "{message}");
         assert!(message.contains("row 1"), "{message}");
@@ -307,4 +307,12 @@ fn the_json_document_lists_the_columns_in_order() {
     assert_eq!(document["columns"][0], first);
     assert_eq!(document["columns"][8]["type"], "list<f64>");
     assert_eq!(document["columns"][6].get("unit"), None);
+}
+
+#[test]
+fn a_full_disk_is_named_with_the_way_out() {
+    let full = std::path::Path::new("/dev/full");
+    let message = write_table(full, &samples(), &Metadata::new()).unwrap_err().to_string();
+    assert!(message.contains("cannot write /dev/full"), "{message}");
+    assert!(message.contains("free some space"), "{message}");
 }
