@@ -6,6 +6,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`artifact`] | tables (Arrow), arrays (HDF5), manifests, digests and the folder of a run |
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
 //! | [`scans`] | readers of instrument files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
@@ -16,6 +17,7 @@
 //! positive in compression; a positive friction coefficient opposes the motion. Missing heights
 //! are NaN and nothing else is.
 
+pub mod artifact;
 pub mod contact;
 pub mod numerics;
 pub mod rubber;

@@ -1,0 +1,354 @@
+//! Named one-dimensional arrays as HDF5 files.
+//!
+//! Every dataset has a `unit`; the file has schema name, version, description and the digest of
+//! its content. Shuffle and deflate, which every HDF5 reader has; no object time stamps, so equal
+//! arrays give equal bytes. The HDF5 library works under a process-wide lock: compute in parallel,
+//! write from one place.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use hdf5::types::{FloatSize, TypeDescriptor, VarLenUnicode};
+use hdf5::{Dataset, File, Group, Location};
+use serde::Serialize;
+
+use super::content::hash_text;
+use super::{ArtifactError, Digest, TOOL_VERSION};
+
+const FORMAT: &str = "HDF5 file of arrays";
+/// Datasets from this size on are compressed; below, the chunk index costs more than it saves.
+const COMPRESS_FROM_VALUES: usize = 1024 / size_of::<f64>();
+/// 128 KiB: small against the chunk cache of 1 MiB, large against the overhead of a chunk.
+const CHUNK_VALUES: usize = 16_384;
+/// Of 9; files of tens of megabytes do not deserve the time of the higher levels.
+const DEFLATE_LEVEL: u8 = 4;
+
+/// Value of an attribute.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Attribute {
+    /// Floating-point number, NaN allowed.
+    Float(f64),
+    /// Signed integer.
+    Integer(i64),
+    /// UTF-8 text without NUL.
+    Text(String),
+}
+
+/// One array of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArrayDataset {
+    /// Name, unique in the file; `/` separates groups, as in `scan_07/heights`.
+    pub name: String,
+    /// Unit of the values, `"1"` for pure numbers.
+    pub unit: String,
+    /// Further attributes; `unit` is reserved.
+    pub attributes: BTreeMap<String, Attribute>,
+    /// Values; NaN stands for a missing one.
+    pub values: Vec<f64>,
+}
+
+/// What a file of arrays says about itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ArraysInfo {
+    /// Schema name.
+    pub schema: String,
+    /// Schema version.
+    pub version: u32,
+    /// Version of the tool that wrote the file.
+    pub tool_version: String,
+    /// What the file holds.
+    pub description: String,
+    /// Digest of names, units, attributes and values.
+    pub content_digest: Digest,
+    /// The datasets, sorted by name.
+    pub datasets: Vec<DatasetInfo>,
+}
+
+/// One dataset without its values.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DatasetInfo {
+    /// Name with its groups.
+    pub name: String,
+    /// Unit of the values.
+    pub unit: String,
+    /// Number of values.
+    pub length: usize,
+    /// Further attributes.
+    pub attributes: BTreeMap<String, Attribute>,
+}
+
+/// Writes arrays to a file and returns the content digest, which covers schema name and version,
+/// names, units, attributes and exact bits of the values, whatever the order of the datasets.
+///
+/// An existing file is overwritten; the data are not forced to the disk, see
+/// [`Pending::commit`](super::Pending::commit).
+///
+/// # Errors
+/// [`ArtifactError::Dataset`] for names that are empty or used twice, an empty unit, or text that
+/// HDF5 cannot hold; [`ArtifactError::Unwritable`] if the file cannot be written.
+pub fn write_arrays(
+    path: &Path,
+    schema: &str,
+    version: u32,
+    description: &str,
+    datasets: &[ArrayDataset],
+) -> Result<Digest, ArtifactError> {
+    check_datasets(datasets)?;
+    let digest = content_digest(schema, version, datasets);
+    let header = [
+        ("schema", Attribute::Text(schema.to_owned())),
+        ("version", Attribute::Integer(i64::from(version))),
+        ("tool_version", Attribute::Text(TOOL_VERSION.to_owned())),
+        ("description", Attribute::Text(description.to_owned())),
+        ("content_digest", Attribute::Text(digest.to_string())),
+    ];
+    let write = || -> hdf5::Result<()> {
+        let file = File::create(path)?;
+        for (name, value) in &header {
+            write_attribute(&file, name, value)?;
+        }
+        datasets.iter().try_for_each(|dataset| write_dataset(&file, dataset))?;
+        file.flush()?;
+        file.close()
+    };
+    write().map_err(|error| ArtifactError::Unwritable {
+        path: path.to_path_buf(),
+        reason: innermost(&error),
+    })?;
+    Ok(digest)
+}
+
+/// Reads a file that [`write_arrays`] wrote; the datasets come sorted by name.
+///
+/// # Errors
+/// [`ArtifactError::WrongSchema`] and [`ArtifactError::WrongVersion`] if the file holds something
+/// else, [`ArtifactError::Missing`], [`ArtifactError::Unreadable`] and [`ArtifactError::Damaged`]
+/// if it is not intact, [`ArtifactError::Io`].
+pub fn read_arrays(
+    path: &Path,
+    schema: &str,
+    version: u32,
+) -> Result<Vec<ArrayDataset>, ArtifactError> {
+    let reader = Reader::open(path)?;
+    let header = reader.header()?;
+    ArtifactError::check_schema(path, (&header.schema, header.version), (schema, version))?;
+    reader.datasets(&header)
+}
+
+/// Schema and datasets of any file of arrays, after its content digest has been checked.
+///
+/// # Errors
+/// [`ArtifactError::Missing`], [`ArtifactError::Unreadable`], [`ArtifactError::Damaged`] or
+/// [`ArtifactError::Io`].
+pub fn arrays_info(path: &Path) -> Result<ArraysInfo, ArtifactError> {
+    let reader = Reader::open(path)?;
+    let header = reader.header()?;
+    let datasets = reader.datasets(&header)?.into_iter().map(|dataset| DatasetInfo {
+        name: dataset.name,
+        unit: dataset.unit,
+        length: dataset.values.len(),
+        attributes: dataset.attributes,
+    });
+    Ok(ArraysInfo { datasets: datasets.collect(), ..header })
+}
+
+fn check_datasets(datasets: &[ArrayDataset]) -> Result<(), ArtifactError> {
+    let mut names = BTreeSet::new();
+    for ArrayDataset { name, unit, attributes, .. } in datasets {
+        let refuse = |reason: &str| {
+            Err(ArtifactError::Dataset { name: name.clone(), reason: reason.to_owned() })
+        };
+        if name.split('/').any(|part| part.is_empty() || part == "." || part == "..") {
+            return refuse("every part of its name between `/` must be a word");
+        }
+        if !names.insert(name.as_str()) {
+            return refuse("its name is used twice");
+        }
+        let above = name.match_indices('/').map(|(at, _)| &name[..at]);
+        if above.into_iter().any(|group| datasets.iter().any(|other| other.name == group)) {
+            return refuse("one of its groups is the name of a dataset");
+        }
+        if unit.is_empty() {
+            return refuse("its unit is empty; pure numbers have the unit `1`");
+        }
+        if attributes.contains_key("unit") {
+            return refuse("the attribute `unit` is a field of its own");
+        }
+        let texts = attributes.iter().flat_map(|(key, value)| match value {
+            Attribute::Text(text) => [key, text],
+            _ => [key, name],
+        });
+        if texts.chain([name, unit]).any(|text| text.contains('\0')) {
+            return refuse("a text with a NUL character cannot be kept in HDF5");
+        }
+    }
+    Ok(())
+}
+
+fn write_dataset(file: &File, dataset: &ArrayDataset) -> hdf5::Result<()> {
+    let ArrayDataset { name, unit, attributes, values } = dataset;
+    let mut builder = file.new_dataset_builder().obj_track_times(false);
+    if values.len() >= COMPRESS_FROM_VALUES {
+        builder = builder.chunk(values.len().min(CHUNK_VALUES)).shuffle().deflate(DEFLATE_LEVEL);
+    }
+    let written = builder.with_data(values.as_slice()).create(name.as_str())?;
+    write_attribute(&written, "unit", &Attribute::Text(unit.clone()))?;
+    attributes.iter().try_for_each(|(key, value)| write_attribute(&written, key, value))
+}
+
+fn write_attribute(location: &Location, name: &str, value: &Attribute) -> hdf5::Result<()> {
+    match value {
+        Attribute::Float(x) => location.new_attr::<f64>().create(name)?.write_scalar(x),
+        Attribute::Integer(i) => location.new_attr::<i64>().create(name)?.write_scalar(i),
+        // Variable length and UTF-8: h5py gives `str`, `bytes` for the fixed or ASCII kinds.
+        Attribute::Text(text) => {
+            let text: VarLenUnicode =
+                text.parse().map_err(|error| format!("text of `{name}`: {error:?}"))?;
+            location.new_attr::<VarLenUnicode>().create(name)?.write_scalar(&text)
+        }
+    }
+}
+
+/// An open file and its path for the messages.
+struct Reader<'a> {
+    path: &'a Path,
+    file: File,
+}
+
+impl<'a> Reader<'a> {
+    fn open(path: &'a Path) -> Result<Self, ArtifactError> {
+        // Separates a file that is not there or not ours to read from one that is not HDF5.
+        std::fs::File::open(path).map_err(ArtifactError::io("open", path))?;
+        let file = File::open(path)
+            .map_err(|error| ArtifactError::unreadable(path, FORMAT, innermost(&error)))?;
+        Ok(Self { path, file })
+    }
+
+    fn unreadable(&self, error: hdf5::Error) -> ArtifactError {
+        ArtifactError::unreadable(self.path, FORMAT, innermost(&error))
+    }
+
+    fn header(&self) -> Result<ArraysInfo, ArtifactError> {
+        let text = |name: &str| match self.attribute(&self.file, "the file", name)? {
+            Attribute::Text(text) => Ok(text),
+            other => {
+                let reason = format!("`{name}` is {other:?}");
+                Err(ArtifactError::unreadable(self.path, FORMAT, reason))
+            }
+        };
+        let version = self.attribute(&self.file, "the file", "version")?;
+        let invalid = |reason: String| ArtifactError::unreadable(self.path, FORMAT, reason);
+        Ok(ArraysInfo {
+            schema: text("schema")?,
+            version: match version {
+                Attribute::Integer(version) => u32::try_from(version).ok(),
+                _ => None,
+            }
+            .ok_or_else(|| invalid(format!("its schema version is {version:?}")))?,
+            tool_version: text("tool_version")?,
+            description: text("description")?,
+            content_digest: text("content_digest")?.parse().map_err(invalid)?,
+            datasets: Vec::new(),
+        })
+    }
+
+    fn datasets(&self, header: &ArraysInfo) -> Result<Vec<ArrayDataset>, ArtifactError> {
+        let mut datasets = Vec::new();
+        self.collect(&self.file, &mut datasets)?;
+        datasets.sort_by(|a, b| a.name.cmp(&b.name));
+        let found = content_digest(&header.schema, header.version, &datasets);
+        ArtifactError::check_digest(self.path, header.content_digest, found)?;
+        Ok(datasets)
+    }
+
+    fn collect(&self, group: &Group, into: &mut Vec<ArrayDataset>) -> Result<(), ArtifactError> {
+        for dataset in group.datasets().map_err(|error| self.unreadable(error))? {
+            into.push(self.dataset(&dataset)?);
+        }
+        for group in group.groups().map_err(|error| self.unreadable(error))? {
+            self.collect(&group, into)?;
+        }
+        Ok(())
+    }
+
+    fn dataset(&self, dataset: &Dataset) -> Result<ArrayDataset, ArtifactError> {
+        let name = dataset.name().trim_start_matches('/').to_owned();
+        let owner = format!("dataset `{name}`");
+        let unit = match self.attribute(dataset, &owner, "unit")? {
+            Attribute::Text(unit) => unit,
+            other => {
+                let reason = format!("the unit of {owner} is {other:?}");
+                return Err(ArtifactError::unreadable(self.path, FORMAT, reason));
+            }
+        };
+        let keys = dataset.attr_names().map_err(|error| self.unreadable(error))?;
+        let attributes = keys
+            .into_iter()
+            .filter(|key| key != "unit")
+            .map(|key| Ok((key.clone(), self.attribute(dataset, &owner, &key)?)))
+            .collect::<Result<_, ArtifactError>>()?;
+        let values = dataset.read_raw::<f64>().map_err(|error| self.unreadable(error))?;
+        Ok(ArrayDataset { name, unit, attributes, values })
+    }
+
+    fn attribute(
+        &self,
+        location: &Location,
+        owner: &str,
+        name: &str,
+    ) -> Result<Attribute, ArtifactError> {
+        let attribute = location.attr(name).map_err(|_| ArtifactError::Missing {
+            path: self.path.to_path_buf(),
+            what: format!("attribute `{name}` of {owner}"),
+        })?;
+        let read = || -> hdf5::Result<Attribute> {
+            match attribute.dtype()?.to_descriptor()? {
+                TypeDescriptor::Float(FloatSize::U8) => {
+                    attribute.read_scalar().map(Attribute::Float)
+                }
+                TypeDescriptor::Integer(_) => attribute.read_scalar().map(Attribute::Integer),
+                TypeDescriptor::VarLenUnicode => {
+                    let text = attribute.read_scalar::<VarLenUnicode>()?;
+                    Ok(Attribute::Text(text.as_str().to_owned()))
+                }
+                other => Err(format!("attribute `{name}` of {owner} is {other}").into()),
+            }
+        };
+        read().map_err(|error| self.unreadable(error))
+    }
+}
+
+fn content_digest(schema: &str, version: u32, datasets: &[ArrayDataset]) -> Digest {
+    let sorted: BTreeMap<&str, &ArrayDataset> =
+        datasets.iter().map(|dataset| (dataset.name.as_str(), dataset)).collect();
+    let mut hasher = blake3::Hasher::new();
+    hash_text(&mut hasher, schema);
+    hasher.update(&version.to_le_bytes());
+    for (name, dataset) in sorted {
+        hash_text(&mut hasher, name);
+        hash_text(&mut hasher, &dataset.unit);
+        hasher.update(&(dataset.attributes.len() as u64).to_le_bytes());
+        for (key, value) in &dataset.attributes {
+            hash_text(&mut hasher, key);
+            match value {
+                Attribute::Float(x) => hash_text(&mut hasher, &format!("f64 {:x}", x.to_bits())),
+                Attribute::Integer(i) => hash_text(&mut hasher, &format!("i64 {i}")),
+                Attribute::Text(text) => hash_text(&mut hasher, &format!("text {text}")),
+            }
+        }
+        hasher.update(&(dataset.values.len() as u64).to_le_bytes());
+        for value in &dataset.values {
+            hasher.update(&value.to_le_bytes());
+        }
+    }
+    Digest::of_hasher(&hasher)
+}
+
+/// The first cause in the library's stack of errors, in one line.
+fn innermost(error: &hdf5::Error) -> String {
+    match error.stack().and_then(|stack| stack.last().map(|frame| frame.desc().to_owned())) {
+        Some(cause) => cause,
+        None => error.to_string(),
+    }
+}

@@ -1,0 +1,231 @@
+//! What can go wrong with a file, and what to do about it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::Digest;
+
+/// Failure to write, read or trust an artifact.
+#[derive(Debug, thiserror::Error)]
+pub enum ArtifactError {
+    /// The operating system refused.
+    #[error("cannot {action} {}: {cause}{}", .path.display(), advice(.cause))]
+    Io {
+        /// What was attempted, an infinitive such as `write`.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system answered.
+        cause: io::Error,
+    },
+    /// The file cannot be decoded at all.
+    #[error(
+        "{} is no readable {format} ({reason}); it is truncated, damaged or of another kind: delete it and run the stage again",
+        .path.display()
+    )]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What it should have been, such as `Arrow IPC file`.
+        format: &'static str,
+        /// What the decoder stumbled over.
+        reason: String,
+    },
+    /// The format library refused to write.
+    #[error("cannot write {}: {reason}; check the free space and the permissions of its folder", .path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What the library said.
+        reason: String,
+    },
+    /// The file holds something else.
+    #[error("{} holds {found}, expected {expected}: give the file of the right stage", .path.display())]
+    WrongSchema {
+        /// The file.
+        path: PathBuf,
+        /// Schema name found.
+        found: String,
+        /// Schema name asked for.
+        expected: String,
+    },
+    /// The file was written by another version of the tool.
+    #[error(
+        "{} holds {schema} version {found}, this tool reads version {expected}: run the stage again, or use the tool that wrote it",
+        .path.display()
+    )]
+    WrongVersion {
+        /// The file.
+        path: PathBuf,
+        /// Schema name.
+        schema: String,
+        /// Version found.
+        found: u32,
+        /// Version asked for.
+        expected: u32,
+    },
+    /// The columns are not those of the schema although name and version are.
+    #[error("{} does not have the columns of {schema}: {reason}; run the stage again", .path.display())]
+    WrongColumns {
+        /// The file.
+        path: PathBuf,
+        /// Schema name.
+        schema: String,
+        /// The first difference.
+        reason: String,
+    },
+    /// A value that is no number was about to be written to a table.
+    #[error(
+        "column {column} of {schema} is NaN in row {row} (counted from 0): an unconverged or undefined result is no number, leave it empty (Option) or drop the row"
+    )]
+    NotANumber {
+        /// Schema name.
+        schema: String,
+        /// Column name.
+        column: String,
+        /// Row, counted from 0.
+        row: usize,
+    },
+    /// A row type that cannot be a table; a mistake in the program, not in the data.
+    #[error("column {column} of {schema} {reason}")]
+    RowType {
+        /// Schema name.
+        schema: String,
+        /// Column name, or the metadata key.
+        column: String,
+        /// What is wrong and what is possible.
+        reason: String,
+    },
+    /// A set of arrays that cannot be a file; a mistake in the program, not in the data.
+    #[error("dataset `{name}` cannot be written: {reason}")]
+    Dataset {
+        /// Dataset name.
+        name: String,
+        /// What is wrong and what is possible.
+        reason: String,
+    },
+    /// A dataset or attribute that every file of the kind has is missing.
+    #[error("{} has no {what}: it was not written by this tool or is damaged; run the stage again", .path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// What is missing, such as ``attribute `unit` of dataset `a/b` ``.
+        what: String,
+    },
+    /// The content is not what was written.
+    #[error(
+        "{} was changed or damaged after it was written (digest {found:#}, written as {expected:#}): delete its folder and run the stage again",
+        .path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Digest in the manifest or the file itself.
+        expected: Digest,
+        /// Digest of what is there.
+        found: Digest,
+    },
+    /// The file is shorter or longer than its manifest says.
+    #[error(
+        "{} has {found} bytes, its manifest says {expected}: it was truncated or replaced; delete its folder and run the stage again",
+        .path.display()
+    )]
+    WrongSize {
+        /// The file.
+        path: PathBuf,
+        /// Bytes according to the manifest.
+        expected: u64,
+        /// Bytes found.
+        found: u64,
+    },
+    /// Another process works in the folder.
+    #[error("another run is using {}: wait for it or choose another --out", .path.display())]
+    Locked {
+        /// The output folder.
+        path: PathBuf,
+    },
+    /// The stage has not been run, or not to its end.
+    #[error("{} holds no finished result of the stage `{stage}`: run it first", .path.display())]
+    NoResult {
+        /// The output folder.
+        path: PathBuf,
+        /// Stage name.
+        stage: String,
+    },
+    /// The result exists but does not have the file.
+    #[error("the result of the stage `{stage}` has no file `{file}`, it has: {available}")]
+    NoSuchOutput {
+        /// Stage name.
+        stage: String,
+        /// File asked for.
+        file: String,
+        /// Files of the result.
+        available: String,
+    },
+    /// A value has no JSON form that reads back.
+    #[error("{what} cannot be kept as JSON ({reason}); numbers must be finite, keys must be text")]
+    NotRepresentable {
+        /// What was to be kept.
+        what: String,
+        /// What the serialiser said.
+        reason: String,
+    },
+    /// A committed schema is not the one of the program.
+    #[error("{} is out of date: generate the schemas again and commit them", .path.display())]
+    SchemaDrift {
+        /// The committed file.
+        path: PathBuf,
+    },
+}
+
+impl ArtifactError {
+    /// Closure for `map_err` that adds what was attempted and where.
+    pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_path_buf();
+        move |cause| Self::Io { action, path, cause }
+    }
+
+    pub(super) fn unreadable(path: &Path, format: &'static str, reason: impl ToString) -> Self {
+        Self::Unreadable { path: path.to_path_buf(), format, reason: reason.to_string() }
+    }
+
+    /// Compares the schema of a file with the one asked for, name first.
+    pub(super) fn check_schema(
+        path: &Path,
+        found: (&str, u32),
+        expected: (&str, u32),
+    ) -> Result<(), Self> {
+        let path = path.to_path_buf();
+        if found.0 != expected.0 {
+            let (found, expected) = (found.0.to_owned(), expected.0.to_owned());
+            return Err(Self::WrongSchema { path, found, expected });
+        }
+        if found.1 != expected.1 {
+            let schema = found.0.to_owned();
+            return Err(Self::WrongVersion { path, schema, found: found.1, expected: expected.1 });
+        }
+        Ok(())
+    }
+
+    /// Compares a digest with the recorded one.
+    pub(super) fn check_digest(path: &Path, expected: Digest, found: Digest) -> Result<(), Self> {
+        if expected == found {
+            return Ok(());
+        }
+        Err(Self::Damaged { path: path.to_path_buf(), expected, found })
+    }
+}
+
+/// What to do about the failures of the operating system that a user can mend.
+fn advice(cause: &io::Error) -> &'static str {
+    match cause.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "; free some space or choose another --out"
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "; give yourself write access or choose another --out"
+        }
+        io::ErrorKind::NotFound => "; check the path",
+        _ => "",
+    }
+}

@@ -1,0 +1,46 @@
+//! Everything that is kept on disk between two stages.
+//!
+//! ```text
+//! OUT/                        RunFolder, one run at a time (lock)
+//!   bem/                      the current result of the stage `bem`
+//!     manifest.json           Manifest: parameters, inputs, digests; written last
+//!     solves.arrow            a table of a Row type
+//!   realise/
+//!     manifest.json
+//!     surfaces.h5             named arrays
+//! CACHE/ab/abcd….json         SolveStore, single results of a sweep
+//! ```
+//!
+//! Tables are Arrow IPC files, arrays HDF5 files; both carry units, a schema name, a version and a
+//! digest of their content, so pyarrow, polars and h5py read them without this crate. No other
+//! module knows either format.
+
+mod arrays;
+mod columns;
+mod content;
+mod digest;
+mod error;
+mod frame;
+mod layout;
+mod manifest;
+mod schema;
+mod solves;
+mod store;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo};
+pub use arrays::{arrays_info, read_arrays, write_arrays};
+pub use columns::{Column, ColumnType, Row, columns};
+pub use digest::Digest;
+pub use error::ArtifactError;
+pub use frame::{data_frame, write_csv, write_parquet};
+pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
+pub use schema::{check_or_write, table_schema};
+pub use solves::SolveStore;
+pub use store::{Pending, RunFolder, RunView};
+pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
+
+/// Version of the tool that writes an artifact; recorded in every file and no part of any digest.
+pub const TOOL_VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,127 @@
+//! Store of single results, the unit of a sweep, so that a stopped sweep continues where it stopped.
+
+use std::fs::{self, Permissions};
+use std::io::{self, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{ArtifactError, Digest};
+
+const SCHEMA: &str = "asperity.solve";
+const VERSION: u32 = 1;
+
+/// A folder of results, each under the digest of all that determines it.
+///
+/// A result is one JSON file `ab/<64 digits>.json` with the digest of its payload, written under a
+/// temporary name and renamed. It is not forced to the disk: a plain write takes some 0.1 ms, an
+/// fsync milliseconds, which over hundreds of results would dominate a sweep. What a power cut
+/// leaves torn, or a disk flips, fails its digest and counts as absent, so at worst a solve is
+/// repeated. Any number of processes may use one store, also for the same key: each rename puts a
+/// complete file.
+#[derive(Debug, Clone)]
+pub struct SolveStore {
+    dir: PathBuf,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    schema: String,
+    version: u32,
+    key: Digest,
+    digest_of_payload: Digest,
+    payload: Value,
+}
+
+impl SolveStore {
+    /// Opens a store, creating its folder if needed.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`] if the folder cannot be created.
+    pub fn open(dir: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
+        let dir = dir.into();
+        fs::create_dir_all(&dir).map_err(ArtifactError::io("create", &dir))?;
+        Ok(Self { dir })
+    }
+
+    /// The result under that key; none if there is none, if it is damaged or of another version,
+    /// in which cases the file is removed. Floats come back with the same bits.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`] if a file that exists cannot be read or removed.
+    pub fn get<T: DeserializeOwned>(&self, key: &Digest) -> Result<Option<T>, ArtifactError> {
+        let path = self.path(key);
+        let bytes = match fs::read(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            read => read.map_err(ArtifactError::io("read", &path))?,
+        };
+        if let Some(payload) = intact_payload(&bytes, key)
+            && let Ok(value) = serde_json::from_value(payload)
+        {
+            return Ok(Some(value));
+        }
+        // Another process may have removed it or, rarely, put a good one: then that is repeated.
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(ArtifactError::io("remove", &path)(error))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Keeps a result under a key, in place of any other.
+    ///
+    /// # Errors
+    /// [`ArtifactError::NotRepresentable`] if the value would not read back (a number that is not
+    /// finite), [`ArtifactError::Io`].
+    pub fn put<T: Serialize + DeserializeOwned>(
+        &self,
+        key: &Digest,
+        value: &T,
+    ) -> Result<(), ArtifactError> {
+        let unfit = |error: serde_json::Error| ArtifactError::NotRepresentable {
+            what: format!("result {key:#}"),
+            reason: error.to_string(),
+        };
+        let payload = serde_json::to_value(value).map_err(unfit)?;
+        T::deserialize(&payload).map_err(unfit)?;
+        let entry = Entry {
+            schema: SCHEMA.to_owned(),
+            version: VERSION,
+            key: *key,
+            digest_of_payload: Digest::of_value(&payload),
+            payload,
+        };
+        let bytes = serde_json::to_vec(&entry).map_err(unfit)?;
+        write_by_rename(&self.path(key), &bytes)
+    }
+
+    /// 256 folders at most, so that none grows large.
+    fn path(&self, key: &Digest) -> PathBuf {
+        let digits = key.to_string();
+        self.dir.join(&digits[..2]).join(format!("{digits}.json"))
+    }
+}
+
+fn intact_payload(bytes: &[u8], key: &Digest) -> Option<Value> {
+    let entry: Entry = serde_json::from_slice(bytes).ok()?;
+    let as_asked = entry.schema == SCHEMA && entry.version == VERSION && entry.key == *key;
+    (as_asked && Digest::of_value(&entry.payload) == entry.digest_of_payload)
+        .then_some(entry.payload)
+}
+
+fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder).map_err(ArtifactError::io("create", folder))?;
+    let mut file = tempfile::Builder::new()
+        .prefix(".tmp-")
+        .permissions(Permissions::from_mode(0o666))
+        .tempfile_in(folder)
+        .map_err(ArtifactError::io("create a file in", folder))?;
+    file.write_all(bytes).map_err(ArtifactError::io("write", path))?;
+    file.persist(path).map_err(|error| ArtifactError::io("rename to", path)(error.error))?;
+    Ok(())
+}

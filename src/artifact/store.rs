@@ -1,0 +1,350 @@
+//! The output folder of a run: one subfolder per stage with its current result.
+//!
+//! A result is written to a temporary folder, forced to the disk, its manifest last, then renamed
+//! into place. A manifest in place therefore means that the result is complete, and a kill at any
+//! moment leaves the old result or the new one. Needs a POSIX file system (rename, flock).
+
+use std::fs::{self, File, Permissions, TryLockError};
+use std::io::{self, Write};
+use std::ops::Deref;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use tempfile::TempDir;
+
+use super::table::{decode_rows, read_bytes};
+use super::{
+    ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, read_arrays,
+    write_arrays, write_table,
+};
+
+const LOCK_FILE: &str = ".lock";
+const PENDING_PREFIX: &str = ".tmp-";
+const REPLACED_PREFIX: &str = ".old-";
+
+/// The results in an output folder, for reading; others may be writing at the same time.
+#[derive(Debug)]
+pub struct RunView {
+    path: PathBuf,
+}
+
+impl RunView {
+    /// View of the folder, which need not exist yet.
+    pub fn of(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into() }
+    }
+
+    /// The output folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Path of a file of a result, whether it exists or not.
+    pub fn file(&self, stage: &str, file: &str) -> PathBuf {
+        self.path.join(stage).join(file)
+    }
+
+    /// The manifest of the current result; none if the stage has no finished one.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Unreadable`] if it is no manifest, [`ArtifactError::WrongVersion`] if it
+    /// is one of another version, [`ArtifactError::Io`].
+    pub fn stage_manifest(&self, stage: &str) -> Result<Option<Manifest>, ArtifactError> {
+        #[derive(Deserialize)]
+        struct Header {
+            schema: String,
+            version: u32,
+        }
+        let path = self.file(stage, Manifest::FILE);
+        let bytes = match fs::read(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            read => read.map_err(ArtifactError::io("read", &path))?,
+        };
+        let unreadable = |error: serde_json::Error| {
+            ArtifactError::unreadable(&path, "manifest", error.to_string())
+        };
+        // Another version may have other fields, so the header is judged alone.
+        let header: Header = serde_json::from_slice(&bytes).map_err(unreadable)?;
+        let found = (header.schema.as_str(), header.version);
+        ArtifactError::check_schema(&path, found, (Manifest::SCHEMA, Manifest::VERSION))?;
+        serde_json::from_slice(&bytes).map(Some).map_err(unreadable)
+    }
+
+    /// Compares size and digest of every output with the manifest.
+    ///
+    /// # Errors
+    /// [`ArtifactError::NoResult`], or for the first bad file [`ArtifactError::Io`] if it is
+    /// missing, [`ArtifactError::WrongSize`] or [`ArtifactError::Damaged`].
+    pub fn verify(&self, stage: &str) -> Result<(), ArtifactError> {
+        let manifest = self.finished(stage)?;
+        manifest.outputs.iter().try_for_each(|output| self.verify_output(stage, output))
+    }
+
+    /// Reads a table of a result after comparing its bytes with the manifest.
+    ///
+    /// # Errors
+    /// Those of [`RunView::verify`] and [`read_table`](super::read_table),
+    /// [`ArtifactError::NoSuchOutput`].
+    pub fn read_table<R: Row>(
+        &self,
+        stage: &str,
+        file: &str,
+    ) -> Result<(Vec<R>, Metadata), ArtifactError> {
+        let output = self.finished_output(stage, file)?;
+        let path = self.file(stage, file);
+        let bytes = read_bytes(&path)?;
+        check_size(&path, output.size, bytes.len() as u64)?;
+        ArtifactError::check_digest(&path, output.bytes_digest, Digest::of_bytes(&bytes))?;
+        decode_rows(&path, bytes)
+    }
+
+    /// Reads a file of arrays of a result after comparing its bytes with the manifest.
+    ///
+    /// # Errors
+    /// Those of [`RunView::verify`] and [`read_arrays`], [`ArtifactError::NoSuchOutput`].
+    pub fn read_arrays(
+        &self,
+        stage: &str,
+        file: &str,
+        schema: &str,
+        version: u32,
+    ) -> Result<Vec<ArrayDataset>, ArtifactError> {
+        let output = self.finished_output(stage, file)?;
+        self.verify_output(stage, &output)?;
+        read_arrays(&self.file(stage, file), schema, version)
+    }
+
+    fn finished(&self, stage: &str) -> Result<Manifest, ArtifactError> {
+        self.stage_manifest(stage)?.ok_or_else(|| ArtifactError::NoResult {
+            path: self.path.clone(),
+            stage: stage.to_owned(),
+        })
+    }
+
+    fn finished_output(&self, stage: &str, file: &str) -> Result<Output, ArtifactError> {
+        let manifest = self.finished(stage)?;
+        manifest.output(file).cloned().ok_or_else(|| {
+            let names: Vec<_> = manifest.outputs.iter().map(|o| o.file.as_str()).collect();
+            ArtifactError::NoSuchOutput {
+                stage: stage.to_owned(),
+                file: file.to_owned(),
+                available: names.join(", "),
+            }
+        })
+    }
+
+    fn verify_output(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
+        let path = self.file(stage, &output.file);
+        let size = fs::metadata(&path).map_err(ArtifactError::io("read", &path))?.len();
+        check_size(&path, output.size, size)?;
+        ArtifactError::check_digest(&path, output.bytes_digest, Digest::of_file(&path)?)
+    }
+}
+
+fn check_size(path: &Path, expected: u64, found: u64) -> Result<(), ArtifactError> {
+    if expected == found {
+        return Ok(());
+    }
+    Err(ArtifactError::WrongSize { path: path.to_path_buf(), expected, found })
+}
+
+/// The output folder of the one run that may write to it; the lock ends with the value or the
+/// process.
+#[derive(Debug)]
+pub struct RunFolder {
+    view: RunView,
+    _lock: File,
+}
+
+impl Deref for RunFolder {
+    type Target = RunView;
+
+    fn deref(&self) -> &RunView {
+        &self.view
+    }
+}
+
+impl RunFolder {
+    /// Creates the folder if needed, locks it and clears away what a killed run left behind.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Locked`] if another run has it, [`ArtifactError::Io`] if it cannot be
+    /// created or written to.
+    pub fn open(path: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
+        let path = path.into();
+        fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
+        let lock_path = path.join(LOCK_FILE);
+        let lock = File::create(&lock_path).map_err(ArtifactError::io("create", &lock_path))?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(ArtifactError::Locked { path }),
+            Err(TryLockError::Error(error)) => {
+                return Err(ArtifactError::io("lock", &lock_path)(error));
+            }
+        }
+        clear_leftovers(&path)?;
+        Ok(Self { view: RunView { path }, _lock: lock })
+    }
+
+    /// Starts a result of the stage in a temporary folder; dropping it leaves the old result.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`] if the temporary folder cannot be created.
+    pub fn begin(&self, stage: &str) -> Result<Pending<'_>, ArtifactError> {
+        let folder = tempfile::Builder::new()
+            .prefix(&format!("{PENDING_PREFIX}{stage}-"))
+            // The usual permissions less the umask: results are for colleagues too.
+            .permissions(Permissions::from_mode(0o777))
+            .tempdir_in(self.path())
+            .map_err(ArtifactError::io("create a folder in", self.path()))?;
+        Ok(Pending { run: self, stage: stage.to_owned(), folder, outputs: Vec::new() })
+    }
+}
+
+/// Removes temporary folders. A replaced result goes as well, unless the kill came between moving
+/// it aside and moving the new one into place; then it is put back.
+fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
+    for entry in fs::read_dir(run).map_err(ArtifactError::io("read", run))? {
+        let path = entry.map_err(ArtifactError::io("read", run))?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        match name.strip_prefix(REPLACED_PREFIX) {
+            Some(stage) if !run.join(stage).exists() => {
+                fs::rename(&path, run.join(stage)).map_err(ArtifactError::io("rename", &path))?;
+            }
+            None if !name.starts_with(PENDING_PREFIX) => {}
+            _ => fs::remove_dir_all(&path).map_err(ArtifactError::io("remove", &path))?,
+        }
+    }
+    Ok(())
+}
+
+/// A result that is being written.
+#[derive(Debug)]
+pub struct Pending<'a> {
+    run: &'a RunFolder,
+    stage: String,
+    folder: TempDir,
+    outputs: Vec<Output>,
+}
+
+impl Pending<'_> {
+    /// Path at which a file of the result is to be written; [`Pending::record`] makes it an output.
+    pub fn path(&self, file: &str) -> PathBuf {
+        self.folder.path().join(file)
+    }
+
+    /// The outputs so far, for the manifest.
+    pub fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    /// Writes a table and records it as an output.
+    ///
+    /// # Errors
+    /// Those of [`write_table`].
+    pub fn write_table<R: Row>(
+        &mut self,
+        file: &str,
+        rows: &[R],
+        metadata: &Metadata,
+    ) -> Result<(), ArtifactError> {
+        let content = write_table(&self.path(file), rows, metadata)?;
+        self.record(file, R::SCHEMA, R::VERSION, Some(content))
+    }
+
+    /// Writes arrays and records them as an output.
+    ///
+    /// # Errors
+    /// Those of [`write_arrays`].
+    pub fn write_arrays(
+        &mut self,
+        file: &str,
+        schema: &str,
+        version: u32,
+        description: &str,
+        datasets: &[ArrayDataset],
+    ) -> Result<(), ArtifactError> {
+        let content = write_arrays(&self.path(file), schema, version, description, datasets)?;
+        self.record(file, schema, version, Some(content))
+    }
+
+    /// Records a file written at [`Pending::path`] as an output; without a content digest its
+    /// bytes are the content.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`] if the file cannot be read.
+    pub fn record(
+        &mut self,
+        file: &str,
+        schema: &str,
+        schema_version: u32,
+        content_digest: Option<Digest>,
+    ) -> Result<(), ArtifactError> {
+        let path = self.path(file);
+        let bytes_digest = Digest::of_file(&path)?;
+        let size = fs::metadata(&path).map_err(ArtifactError::io("read", &path))?.len();
+        self.outputs.push(Output {
+            file: file.to_owned(),
+            schema: schema.to_owned(),
+            schema_version,
+            bytes_digest,
+            content_digest: content_digest.unwrap_or(bytes_digest),
+            size,
+        });
+        Ok(())
+    }
+
+    /// Makes this the current result of the stage.
+    ///
+    /// Forces files and folders to the disk, the manifest last; the old result is moved aside
+    /// and removed once the new one is in place.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`]; the old result then stays, or comes back with the next
+    /// [`RunFolder::open`].
+    pub fn commit(self, manifest: &Manifest) -> Result<(), ArtifactError> {
+        let folder = self.folder.path();
+        for entry in fs::read_dir(folder).map_err(ArtifactError::io("read", folder))? {
+            synchronise(&entry.map_err(ArtifactError::io("read", folder))?.path())?;
+        }
+        write_manifest(&folder.join(Manifest::FILE), manifest)?;
+        synchronise(folder)?;
+
+        let run = self.run.path();
+        let place = run.join(&self.stage);
+        let aside = run.join(format!("{REPLACED_PREFIX}{}", self.stage));
+        let replaces = place.exists();
+        if replaces {
+            fs::rename(&place, &aside).map_err(ArtifactError::io("rename", &place))?;
+        }
+        if let Err(error) = fs::rename(folder, &place) {
+            if replaces {
+                fs::rename(&aside, &place).map_err(ArtifactError::io("restore", &place))?;
+            }
+            return Err(ArtifactError::io("rename a new result to", &place)(error));
+        }
+        // The folder has moved; nothing is left for its guard to remove.
+        let _ = self.folder.keep();
+        synchronise(run)?;
+        if replaces {
+            fs::remove_dir_all(&aside).map_err(ArtifactError::io("remove", &aside))?;
+        }
+        Ok(())
+    }
+}
+
+fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), ArtifactError> {
+    let mut text = serde_json::to_string_pretty(manifest).map_err(|error| {
+        ArtifactError::NotRepresentable { what: "the manifest".into(), reason: error.to_string() }
+    })?;
+    text.push('\n');
+    let mut file = File::create(path).map_err(ArtifactError::io("create", path))?;
+    file.write_all(text.as_bytes())
+        .and_then(|()| file.sync_all())
+        .map_err(ArtifactError::io("write", path))
+}
+
+fn synchronise(path: &Path) -> Result<(), ArtifactError> {
+    File::open(path).and_then(|file| file.sync_all()).map_err(ArtifactError::io("write", path))
+}

@@ -1,0 +1,124 @@
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::artifact::{ArtifactError, Digest, SolveStore};
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Solve {
+    friction: f64,
+    area_fraction: Option<f64>,
+    pressures: Vec<f64>,
+    seed: u64,
+}
+
+fn solve() -> Solve {
+    Solve {
+        friction: 0.1 + 0.2,
+        area_fraction: None,
+        pressures: vec![1e-300, -0.0],
+        seed: u64::MAX,
+    }
+}
+
+fn key() -> Digest {
+    Digest::of_bytes(b"solve")
+}
+
+fn file_of(dir: &Path, key: &Digest) -> PathBuf {
+    dir.join(&key.to_string()[..2]).join(format!("{key}.json"))
+}
+
+#[test]
+fn a_result_comes_back_under_its_key_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path().join("cache")).unwrap();
+    assert_eq!(store.get::<Solve>(&key()).unwrap(), None);
+    store.put(&key(), &solve()).unwrap();
+    assert_eq!(store.get(&key()).unwrap(), Some(solve()));
+    assert_eq!(store.get::<Solve>(&Digest::of_bytes(b"other")).unwrap(), None);
+    let files = fs::read_dir(file_of(&folder.path().join("cache"), &key()).parent().unwrap());
+    assert_eq!(files.unwrap().count(), 1, "no temporary file stays");
+}
+
+proptest! {
+    #[test]
+    fn every_finite_float_comes_back_to_the_bit(values in prop::collection::vec(any::<f64>(), 0..20)) {
+        let folder = tempfile::tempdir().unwrap();
+        let store = SolveStore::open(folder.path()).unwrap();
+        store.put(&key(), &values).unwrap();
+        let found: Vec<f64> = store.get(&key()).unwrap().unwrap();
+        let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        prop_assert_eq!(bits(&found), bits(&values));
+    }
+}
+
+#[test]
+fn a_nan_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path()).unwrap();
+    let error = store.put(&key(), &Solve { friction: f64::NAN, ..solve() }).unwrap_err();
+    assert!(matches!(error, ArtifactError::NotRepresentable { .. }), "{error}");
+    assert_eq!(store.get::<Solve>(&key()).unwrap(), None);
+}
+
+#[test]
+fn a_file_cut_or_flipped_anywhere_is_absent_and_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path()).unwrap();
+    store.put(&key(), &solve()).unwrap();
+    let path = file_of(folder.path(), &key());
+    let bytes = fs::read(&path).unwrap();
+    let flipped = (0..bytes.len()).map(|index| {
+        let mut flipped = bytes.clone();
+        flipped[index] ^= 1;
+        flipped
+    });
+    let cut = (0..bytes.len()).map(|length| bytes[..length].to_vec());
+    for damaged in flipped.chain(cut) {
+        fs::write(&path, &damaged).unwrap();
+        let found = store.get::<Solve>(&key()).unwrap();
+        // Only a change that JSON takes for the same number may pass, such as 1e-300 to 1E-300.
+        assert!(found.is_none() || found == Some(solve()), "{found:?}");
+        assert_eq!(path.exists(), found.is_some());
+    }
+}
+
+#[test]
+fn another_version_key_or_type_is_absent() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path()).unwrap();
+    let path = file_of(folder.path(), &key());
+    store.put(&key(), &solve()).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
+
+    fs::write(&path, text.replace("\"version\":1", "\"version\":2")).unwrap();
+    assert_eq!(store.get::<Solve>(&key()).unwrap(), None);
+
+    let other = Digest::of_bytes(b"other");
+    fs::create_dir_all(file_of(folder.path(), &other).parent().unwrap()).unwrap();
+    fs::write(file_of(folder.path(), &other), &text).unwrap();
+    assert_eq!(store.get::<Solve>(&other).unwrap(), None);
+
+    store.put(&key(), &solve()).unwrap();
+    assert_eq!(store.get::<Vec<f64>>(&key()).unwrap(), None);
+}
+
+#[test]
+fn writers_of_one_key_do_not_disturb_readers() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path()).unwrap();
+    store.put(&key(), &solve()).unwrap();
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                for _ in 0..50 {
+                    store.put(&key(), &solve()).unwrap();
+                    assert_eq!(store.get(&key()).unwrap(), Some(solve()));
+                }
+            });
+        }
+    });
+}
