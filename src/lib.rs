@@ -20,6 +20,9 @@
 pub mod artifact;
 pub mod contact;
 pub mod numerics;
+pub mod pipeline;
+pub mod recipe;
 pub mod rubber;
 pub mod scans;
+pub mod stages;
 pub mod surface;

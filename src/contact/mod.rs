@@ -15,8 +15,10 @@
 //! | [`sliding`] | nested grids from coarse to fine: the solver that users call |
 //! | [`solution`] | friction, area, separation, dissipation and residual of a solved contact |
 //! | [`area`] | the pressure that gives a wanted contact area |
+//! | [`curve`] | friction over contact area, from few solves |
 
 pub mod area;
+pub mod curve;
 pub mod half_space;
 pub mod sliding;
 pub mod solution;
@@ -27,6 +29,7 @@ mod error;
 mod islands;
 mod preconditioner;
 
+pub use curve::{CurvePoint, CurveValue, friction_curve};
 pub use error::ContactError;
 pub use sliding::SlidingContact;
 pub use solution::ContactSolution;

@@ -82,6 +82,10 @@ impl Preconditioner {
         for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.islands.of_point) {
             *t += s * forces[*id as usize];
         }
+        // A pressure that makes a uniform displacement is invisible to this inverse. Round-off in
+        // the sum is all that could lead a Krylov method there, so it is taken off.
+        let mean = pressure.iter().sum::<f64>() / pressure.len() as f64;
+        pressure.iter_mut().for_each(|t| *t -= mean);
     }
 }
 

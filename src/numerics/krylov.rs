@@ -18,6 +18,10 @@ pub struct KrylovReport {
     pub residual_norm: f64,
 }
 
+/// A new direction smaller than this, relative, is round-off: the Krylov space is exhausted, and
+/// what would come next need not even lie in the range of the operator.
+const EXHAUSTED: f64 = 1e-13;
+
 /// Minimises `|r - B y|` over the Krylov space of `B` and `r` (GMRES without restart, modified
 /// Gram-Schmidt; Saad & Schultz 1986, doi:10.1137/0907058) and returns `y` in place of `r`.
 ///
@@ -63,7 +67,7 @@ pub fn gmres(
         columns.push(column);
         rhs.push(-s * rhs[k]);
         rhs[k] *= c;
-        if rhs[k + 1].abs() <= limits.tolerance || below <= f64::EPSILON * before {
+        if rhs[k + 1].abs() <= limits.tolerance || below <= EXHAUSTED * before {
             break;
         }
         w.iter_mut().for_each(|x| *x /= below);

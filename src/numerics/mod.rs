@@ -1,4 +1,5 @@
 //! Mathematics without physics and without files.
 
+pub mod interpolation;
 pub mod krylov;
 pub mod statistics;

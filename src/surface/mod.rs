@@ -6,6 +6,7 @@ pub mod faults;
 pub mod form;
 pub mod ladder;
 pub mod parameters;
+pub mod realisation;
 pub mod resample;
 pub mod scan;
 pub mod self_affine;

@@ -1,0 +1,347 @@
+//! The one function that wires the stages, and the comparison of what is there with what the
+//! recipe asks for.
+
+use crate::artifact::{ArtifactError, Identity, Input, Manifest, RunFolder, RunView, SolveStore};
+use crate::recipe::Recipe;
+use crate::rubber::Rubber;
+use crate::stages::ingest::ScanFile;
+use crate::stages::{
+    Context, Stage, StageError, approximate, bem, characterise, ingest, realise, tables,
+};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Folder of single solves within a run folder.
+const SOLVES_FOLDER: &str = "solves";
+
+/// Which stages to bring up to date.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Selection {
+    /// Only this stage; what it reads must be up to date.
+    pub only: Option<Stage>,
+    /// This stage and those after it; what it reads must be up to date.
+    pub from: Option<Stage>,
+    /// Compute this stage even if it is up to date.
+    pub force: Option<Stage>,
+}
+
+impl Selection {
+    fn includes(self, stage: Stage) -> bool {
+        self.only.is_none_or(|only| only == stage) && self.from.is_none_or(|from| from <= stage)
+    }
+}
+
+/// What happens during a run.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// A stage is computed.
+    Started(Stage),
+    /// Pieces of work done, of those known so far.
+    Progress(Stage, u64, u64),
+    /// A stage has its result.
+    Finished(Stage, &'a Manifest),
+    /// A stage was up to date.
+    Fresh(Stage),
+}
+
+/// Whether a stage has the result that the recipe asks for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum State {
+    /// It has.
+    Fresh,
+    /// It has none, or another one: why.
+    Stale(Vec<String>),
+}
+
+/// Why a run ended without its results.
+#[derive(Debug, thiserror::Error)]
+pub enum PipelineError {
+    /// A stage.
+    #[error("{stage}: {source}")]
+    Stage {
+        /// The stage.
+        stage: Stage,
+        /// Why.
+        source: Box<StageError>,
+    },
+    /// The run folder.
+    #[error(transparent)]
+    Artifact(#[from] ArtifactError),
+    /// A stage before the selected one is not up to date.
+    #[error(
+        "{selected} reads the results of {stage}, which is stale ({reason}); run without --only \
+         and --from, or with --from {stage}"
+    )]
+    StaleInput {
+        /// The stage that was asked for.
+        selected: Stage,
+        /// The stage that is stale.
+        stage: Stage,
+        /// Why it is.
+        reason: String,
+    },
+}
+
+impl PipelineError {
+    /// Whether the user interrupted.
+    pub fn is_interrupt(&self) -> bool {
+        matches!(self, Self::Stage { source, .. } if matches!(**source, StageError::Interrupted))
+    }
+}
+
+/// Brings the selected stages in the folder `out` up to date with the recipe.
+///
+/// A stage is computed if its key differs from that of the result that is there (see
+/// [`Identity::key`]), or a file of that result is damaged. The solves of `bem` are kept one by
+/// one, so a stopped run continues where it stopped.
+///
+/// # Errors
+/// [`PipelineError`]; the results of finished stages and single solves are kept.
+pub fn run(
+    recipe: &Recipe,
+    out: &Path,
+    selection: Selection,
+    interrupted: &AtomicBool,
+    observer: &(dyn Fn(Event) + Sync),
+) -> Result<(), PipelineError> {
+    let folder = RunFolder::open(out)?;
+    let plan = Plan::new(recipe)?;
+    for stage in plan.stages() {
+        let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
+        let identity = plan.identity(stage, &folder)?;
+        let state = state(stage, &identity, &folder)?;
+        if !selection.includes(stage) {
+            let selected = selection.only.or(selection.from).unwrap_or(stage);
+            if let (State::Stale(reasons), true) = (&state, stage < selected) {
+                let reason = reasons.join("; ");
+                return Err(PipelineError::StaleInput { selected, stage, reason });
+            }
+            continue;
+        }
+        if state == State::Fresh && selection.force != Some(stage) {
+            observer(Event::Fresh(stage));
+            continue;
+        }
+        observer(Event::Started(stage));
+        let start = Instant::now();
+        let mut context = Context {
+            pending: folder.begin(stage.name())?,
+            progress: &|done, total| observer(Event::Progress(stage, done, total)),
+            interrupted,
+        };
+        let warnings = compute(stage, &plan, &folder, selection, &mut context).map_err(in_stage)?;
+        context.check_interrupt().map_err(in_stage)?;
+        let outputs = context.pending.outputs().to_vec();
+        let seconds = start.elapsed().as_secs_f64();
+        let manifest = Manifest::new(&identity, outputs, warnings, seconds);
+        context.pending.commit(&manifest)?;
+        observer(Event::Finished(stage, &manifest));
+    }
+    Ok(())
+}
+
+/// The state of every stage in the folder `out`, without touching it.
+///
+/// # Errors
+/// [`PipelineError`] for scans, a rubber or a manifest that cannot be read.
+pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, PipelineError> {
+    let view = RunView::of(out);
+    let plan = Plan::new(recipe)?;
+    let mut states: Vec<(Stage, State)> = Vec::new();
+    for stage in plan.stages() {
+        let before = states.iter().find(|(_, state)| *state != State::Fresh);
+        let state = match before {
+            Some((before, _)) if view.stage_manifest(stage.name())?.is_some() => {
+                State::Stale(vec![format!("{before} is stale")])
+            }
+            _ => state(stage, &plan.identity(stage, &view)?, &view)?,
+        };
+        states.push((stage, state));
+    }
+    Ok(states)
+}
+
+/// The recipe with what it refers to.
+struct Plan<'a> {
+    recipe: &'a Recipe,
+    scans: Vec<ScanFile>,
+    rubber: Rubber,
+}
+
+impl<'a> Plan<'a> {
+    fn new(recipe: &'a Recipe) -> Result<Self, PipelineError> {
+        let of = |stage| move |source| PipelineError::Stage { stage, source: Box::new(source) };
+        let scans = match &recipe.ingest {
+            Some(ingest) => ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?,
+            None => Vec::new(),
+        };
+        let rubber = bem::rubber(&recipe.bem).map_err(of(Stage::Bem))?;
+        Ok(Self { recipe, scans, rubber })
+    }
+
+    /// The stages of the recipe; one that states its waves needs no scans.
+    fn stages(&self) -> impl Iterator<Item = Stage> {
+        let first = if self.recipe.ingest.is_some() { Stage::Ingest } else { Stage::Approximate };
+        Stage::ALL.into_iter().filter(move |stage| *stage >= first)
+    }
+
+    /// All that determines the result of a stage, given the results before it.
+    fn identity(&self, stage: Stage, view: &RunView) -> Result<Identity, ArtifactError> {
+        let recipe = self.recipe;
+        let from = |stage: Stage, file: &str| -> Result<Vec<Input>, ArtifactError> {
+            let manifest = view.stage_manifest(stage.name())?;
+            Ok(manifest.and_then(|manifest| manifest.input(file)).into_iter().collect())
+        };
+        let (stage_revision, output_schemas, parameters, inputs) = match stage {
+            Stage::Ingest => {
+                let mut parameters = json!(recipe.ingest);
+                // Where the scans are is no parameter: their names and digests are inputs.
+                if let Value::Object(keys) = &mut parameters {
+                    keys.remove("scans");
+                }
+                (ingest::REVISION, ingest::schemas(), parameters, ingest::inputs(&self.scans))
+            }
+            Stage::Characterise => (
+                characterise::REVISION,
+                characterise::schemas(),
+                json!(recipe.characterise),
+                from(Stage::Ingest, ingest::SCANS_FILE)?,
+            ),
+            Stage::Approximate => {
+                let inputs = match recipe.ingest {
+                    Some(_) => from(Stage::Characterise, characterise::CORRELATION_FILE)?,
+                    None => Vec::new(),
+                };
+                let parameters = json!(recipe.approximate);
+                (approximate::REVISION, approximate::schemas(), parameters, inputs)
+            }
+            Stage::Realise => (
+                realise::REVISION,
+                realise::schemas(),
+                json!(recipe.realise),
+                from(Stage::Approximate, approximate::WAVES_FILE)?,
+            ),
+            Stage::Bem => (
+                bem::REVISION,
+                bem::schemas(),
+                recipe.bem.resolved(&self.rubber),
+                from(Stage::Realise, realise::SURFACES_FILE)?,
+            ),
+            Stage::Tables => (
+                tables::REVISION,
+                tables::schemas(),
+                json!(recipe.tables),
+                from(Stage::Bem, bem::CURVES_FILE)?,
+            ),
+        };
+        let stage = stage.name().to_owned();
+        Ok(Identity { stage, stage_revision, output_schemas, parameters, inputs })
+    }
+}
+
+fn compute(
+    stage: Stage,
+    plan: &Plan,
+    folder: &RunFolder,
+    selection: Selection,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let recipe = plan.recipe;
+    match stage {
+        Stage::Ingest => match &recipe.ingest {
+            Some(ingest) => ingest::run(ingest, &plan.scans, context),
+            None => Ok(Vec::new()),
+        },
+        Stage::Characterise => characterise::run(&recipe.characterise, folder, context),
+        Stage::Approximate => approximate::run(&recipe.approximate, folder, context),
+        Stage::Realise => realise::run(&recipe.realise, folder, context),
+        Stage::Bem => {
+            let path = folder.path().join(SOLVES_FOLDER);
+            if selection.force == Some(Stage::Bem) && path.exists() {
+                std::fs::remove_dir_all(&path)
+                    .map_err(|source| StageError::Io { path: path.clone(), source })?;
+            }
+            let store = SolveStore::open(path)?;
+            bem::run(&recipe.bem, &plan.rubber, folder, &store, context)
+        }
+        Stage::Tables => tables::run(folder, context),
+    }
+}
+
+/// Compares the result that is there with what is asked for.
+fn state(stage: Stage, wanted: &Identity, view: &RunView) -> Result<State, ArtifactError> {
+    let manifest = match view.stage_manifest(stage.name()) {
+        Ok(Some(manifest)) => manifest,
+        Ok(None) => return Ok(State::Stale(vec!["not computed yet".into()])),
+        // A manifest that cannot be read is as good as none: the stage is computed again.
+        Err(error) => return Ok(State::Stale(vec![error.to_string()])),
+    };
+    if manifest.key != wanted.key() {
+        return Ok(State::Stale(differences(&manifest, wanted)));
+    }
+    match view.verify(stage.name()) {
+        Ok(()) => Ok(State::Fresh),
+        Err(error) => Ok(State::Stale(vec![error.to_string()])),
+    }
+}
+
+/// Why the keys differ, in the words of the recipe.
+fn differences(there: &Manifest, wanted: &Identity) -> Vec<String> {
+    let mut reasons = Vec::new();
+    compare(&wanted.stage, &there.parameters, &wanted.parameters, &mut reasons);
+    for input in &wanted.inputs {
+        match there.inputs.iter().find(|other| other.name == input.name) {
+            None => reasons.push(format!("{} is new", input.name)),
+            Some(other) if other.digest != input.digest => {
+                reasons.push(format!("{} has changed", input.name));
+            }
+            Some(_) => {}
+        }
+    }
+    for input in &there.inputs {
+        if wanted.inputs.iter().all(|other| other.name != input.name) {
+            reasons.push(format!("{} is gone", input.name));
+        }
+    }
+    if there.stage_revision != wanted.stage_revision {
+        reasons.push(format!(
+            "the stage was revised ({} -> {})",
+            there.stage_revision, wanted.stage_revision
+        ));
+    }
+    if reasons.is_empty() {
+        reasons.push("the layout of its results has changed".into());
+    }
+    reasons
+}
+
+/// Adds `path: old -> new` for every leaf that differs.
+fn compare(path: &str, old: &Value, new: &Value, reasons: &mut Vec<String>) {
+    let (Value::Object(old_keys), Value::Object(new_keys)) = (old, new) else {
+        if old != new {
+            reasons.push(format!("{path}: {} -> {}", shorten(old), shorten(new)));
+        }
+        return;
+    };
+    let mut keys: Vec<&String> = old_keys.keys().chain(new_keys.keys()).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    for key in keys {
+        let part = |keys: &serde_json::Map<String, Value>| keys.get(key).cloned();
+        let (old, new) = (part(old_keys).unwrap_or_default(), part(new_keys).unwrap_or_default());
+        compare(&format!("{path}.{key}"), &old, &new, reasons);
+    }
+}
+
+fn shorten(value: &Value) -> String {
+    let text = match value {
+        Value::Null => return "not set".into(),
+        value => value.to_string(),
+    };
+    if text.chars().count() <= 60 {
+        return text;
+    }
+    text.chars().take(57).chain("...".chars()).collect()
+}

@@ -1,0 +1,142 @@
+//! The recipe: a TOML file that says what a run does, with units in its keys.
+
+use crate::stages::{
+    approximate::Approximate, bem::Bem, characterise::Characterise, ingest::Ingest,
+    realise::Realise, tables::Tables,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// A recipe. Paths in it are relative to the folder of its file; unknown keys are refused.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Recipe {
+    /// What the run is about, in one line.
+    pub title: String,
+    /// Line scans and how to read and condition them. Without this section the waves must stand
+    /// in `approximate.given`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ingest: Option<Ingest>,
+    /// Roughness parameters, height-difference correlation, spectrum, self-affine fit.
+    #[serde(default)]
+    pub characterise: Characterise,
+    /// Superposed sines in place of the scans.
+    pub approximate: Approximate,
+    /// Random-phase realisations.
+    pub realise: Realise,
+    /// Sliding contact of the viscoelastic half-space.
+    pub bem: Bem,
+    /// Averaged friction tables.
+    #[serde(default)]
+    pub tables: Tables,
+}
+
+/// Why a recipe cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RecipeError {
+    /// The file cannot be read.
+    #[error("recipe {}: cannot be read: {source}", path.display())]
+    Read {
+        /// The recipe.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The text is no recipe; the message shows the line and names the key.
+    #[error("recipe {}: {source}", path.display())]
+    Parse {
+        /// The recipe.
+        path: PathBuf,
+        /// What the parser says.
+        source: Box<toml::de::Error>,
+    },
+    /// A value out of its range, or two that contradict each other.
+    #[error("recipe {}: {key} = {value}: {demand}", path.display())]
+    Value {
+        /// The recipe.
+        path: PathBuf,
+        /// The key with its section.
+        key: &'static str,
+        /// Its value.
+        value: String,
+        /// What it must be.
+        demand: &'static str,
+    },
+}
+
+/// A value of a recipe that does not hold: key with section, value, demand.
+pub struct Violation {
+    /// The key with its section, such as `bem.speeds_mm_s`.
+    pub key: &'static str,
+    /// The value as text.
+    pub value: String,
+    /// What it must be.
+    pub demand: &'static str,
+}
+
+/// `Ok` where the demand holds, else the violation.
+pub(crate) fn demand(
+    holds: bool,
+    key: &'static str,
+    value: impl std::fmt::Debug,
+    demand: &'static str,
+) -> Result<(), Violation> {
+    if holds { Ok(()) } else { Err(Violation { key, value: format!("{value:?}"), demand }) }
+}
+
+impl Recipe {
+    /// Reads and checks a recipe; paths in it become relative to the working folder.
+    ///
+    /// # Errors
+    /// [`RecipeError`], which names the file and the key.
+    pub fn read(path: &Path) -> Result<Self, RecipeError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| RecipeError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, path)
+    }
+
+    /// The recipe in a text; `path` is where it stands, for messages and relative paths.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, RecipeError> {
+        let mut recipe: Self = toml::from_str(text).map_err(|source| RecipeError::Parse {
+            path: path.to_owned(),
+            source: Box::new(source),
+        })?;
+        recipe.check().map_err(|violation| RecipeError::Value {
+            path: path.to_owned(),
+            key: violation.key,
+            value: violation.value,
+            demand: violation.demand,
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
+            *scans = folder.join(&*scans);
+        }
+        recipe.bem.rubber = folder.join(&recipe.bem.rubber);
+        Ok(recipe)
+    }
+
+    fn check(&self) -> Result<(), Violation> {
+        self.characterise.check()?;
+        self.approximate.check()?;
+        self.realise.check()?;
+        self.bem.check()?;
+        let (scans, given) = (self.ingest.is_some(), !self.approximate.given.is_empty());
+        demand(
+            scans != given && (!given || self.approximate.waves.is_empty()),
+            "approximate.given",
+            self.approximate.given.len(),
+            "either [ingest] with approximate.waves, or approximate.given without both",
+        )?;
+        let fitted = self.approximate.numbers();
+        demand(
+            self.realise.waves.iter().all(|waves| fitted.contains(waves)),
+            "realise.waves",
+            &self.realise.waves,
+            "each number of waves must also stand in approximate.waves",
+        )
+    }
+}

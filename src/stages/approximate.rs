@@ -1,0 +1,380 @@
+//! approximate: amplitudes of superposed sines with the correlation of the scans.
+
+use super::characterise::{AVERAGE, CORRELATION_FILE, CorrelationRow};
+use super::{Context, StageError, schema_of};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use crate::numerics::statistics::student_t_975;
+use crate::recipe::{Violation, demand};
+use crate::surface::SineScale;
+use crate::surface::correlation::CorrelationSample;
+use crate::surface::ladder::{Ladder, Undetermined};
+use crate::surface::sine_fit::{SineFit, fit_sines, superposed_correlation};
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[approximate]` of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Approximate {
+    /// Numbers of waves to fit; each wavelength is twice the one before.
+    #[serde(default)]
+    pub waves: Vec<u32>,
+    /// Waves taken from elsewhere, in place of scans and a fit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub given: Vec<GivenWaves>,
+    /// Shortest wavelength in millimetres; two sample spacings if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shortest_wavelength_mm: Option<f64>,
+    /// What to do with waves that the scans do not determine, shorter than two samples or longer
+    /// than half a window: `drop` them or `keep` them with a warning.
+    #[serde(default)]
+    pub undetermined: Undetermined,
+    /// Longest lag of the fit in millimetres; that of the correlation if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_lag_mm: Option<f64>,
+}
+
+/// Waves that a recipe states itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GivenWaves {
+    /// Where the waves come from.
+    pub source: String,
+    /// The waves, by ascending wavelength; their number names the approximation.
+    pub scales: Vec<GivenScale>,
+}
+
+/// One wave that a recipe states itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GivenScale {
+    /// Wavelength in millimetres.
+    pub wavelength_mm: f64,
+    /// Amplitude in millimetres.
+    pub amplitude_mm: f64,
+}
+
+impl GivenWaves {
+    fn number(&self) -> u32 {
+        self.scales.len() as u32
+    }
+
+    /// The period must hold every wave a whole number of times, and waves must not repeat.
+    fn holds(&self) -> bool {
+        let longest = self.scales.last().map_or(0.0, |scale| scale.wavelength_mm);
+        let ascends = self.scales.windows(2).all(|w| w[0].wavelength_mm < w[1].wavelength_mm);
+        let valid = |scale: &GivenScale| {
+            let fits = longest / scale.wavelength_mm;
+            scale.wavelength_mm > 0.0
+                && scale.amplitude_mm >= 0.0
+                && (scale.wavelength_mm * scale.amplitude_mm).is_finite()
+                && (fits - fits.round()).abs() < 1e-9 * fits
+        };
+        !self.scales.is_empty() && ascends && self.scales.iter().all(valid)
+    }
+}
+
+impl Approximate {
+    /// The numbers of waves that name the approximations.
+    pub fn numbers(&self) -> Vec<u32> {
+        let given = self.given.iter().map(GivenWaves::number);
+        self.waves.iter().copied().chain(given).collect()
+    }
+
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        let waves = self.numbers();
+        let distinct = waves.iter().enumerate().all(|(i, a)| waves[..i].iter().all(|b| a != b));
+        let valid = !waves.is_empty() && distinct && waves.iter().all(|m| (1..=20).contains(m));
+        let demanded = "a list of numbers of waves, each once and 1 to 20";
+        demand(valid, "approximate.waves", &waves, demanded)?;
+        let demanded = "positive wavelengths, ascending, of which the longest is a multiple, \
+                        and amplitudes of 0 or more";
+        for given in &self.given {
+            demand(given.holds(), "approximate.given.scales", &given.scales, demanded)?;
+        }
+        for (key, value) in [
+            ("approximate.shortest_wavelength_mm", self.shortest_wavelength_mm),
+            ("approximate.longest_lag_mm", self.longest_lag_mm),
+        ] {
+            let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
+            demand(positive, key, value, "it must be positive")?;
+        }
+        Ok(())
+    }
+}
+
+/// The fitted waves: `waves.arrow`.
+pub const WAVES_FILE: &str = "waves.arrow";
+/// How good each fit is: `fits.arrow`.
+pub const FITS_FILE: &str = "fits.arrow";
+/// Measured and fitted correlation: `fitted_correlation.arrow`.
+pub const FITTED_FILE: &str = "fitted_correlation.arrow";
+
+/// One fitted sine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScaleRow {
+    /// Number of waves asked for, which names the approximation.
+    pub waves: u32,
+    /// Number of this wave, from the shortest, starting at 1.
+    pub scale: u32,
+    /// Wavelength.
+    #[schemars(extend("unit" = "mm"))]
+    pub wavelength_mm: f64,
+    /// Amplitude, not negative.
+    #[schemars(extend("unit" = "mm"))]
+    pub amplitude_mm: f64,
+    /// Half width of the 95 % confidence interval of the amplitude: jackknife over the windows;
+    /// absent for fewer than three windows.
+    #[schemars(extend("unit" = "mm"))]
+    pub amplitude_confidence_95_mm: Option<f64>,
+    /// Root mean square slope of this wave (3.3.15).
+    #[schemars(extend("unit" = "1"))]
+    pub rms_slope: f64,
+}
+
+impl Row for ScaleRow {
+    const SCHEMA: &'static str = "asperity.approximate.waves";
+    const VERSION: u32 = 1;
+}
+
+/// How good a fit is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FitRow {
+    /// Number of waves asked for.
+    pub waves: u32,
+    /// Number of waves fitted, without those dropped as undetermined.
+    pub waves_fitted: u32,
+    /// Root mean square residual of log10 of the correlation.
+    #[schemars(extend("unit" = "1"))]
+    pub rms_residual_log10: f64,
+    /// Condition number of the fit: by how much relative errors of the correlation can grow.
+    #[schemars(extend("unit" = "1"))]
+    pub condition_number: f64,
+    /// Norm of the gradient at the solution.
+    #[schemars(extend("unit" = "1"))]
+    pub gradient_norm: f64,
+    /// Iterations of the optimiser.
+    pub iterations: u64,
+    /// Lags fitted.
+    pub lags: u64,
+    /// What the scans do not determine; empty if they determine all waves.
+    pub warnings: String,
+}
+
+impl Row for FitRow {
+    const SCHEMA: &'static str = "asperity.approximate.fits";
+    const VERSION: u32 = 1;
+}
+
+/// Correlation of the scans and of the fitted waves at one lag.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FittedRow {
+    /// Number of waves asked for.
+    pub waves: u32,
+    /// Lag.
+    #[schemars(extend("unit" = "mm"))]
+    pub lag_mm: f64,
+    /// Correlation of the scans.
+    #[schemars(extend("unit" = "mm^2"))]
+    pub measured_mm2: f64,
+    /// Correlation of the superposed sines.
+    #[schemars(extend("unit" = "mm^2"))]
+    pub fitted_mm2: f64,
+}
+
+impl Row for FittedRow {
+    const SCHEMA: &'static str = "asperity.approximate.fitted_correlation";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![schema_of::<ScaleRow>(), schema_of::<FitRow>(), schema_of::<FittedRow>()]
+}
+
+/// Fits the waves and writes the results; returns warnings.
+///
+/// # Errors
+/// [`StageError`]: a ladder of which nothing is determined, a fit that does not converge.
+pub fn run(
+    parameters: &Approximate,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    if !parameters.given.is_empty() {
+        return write_given(parameters, context);
+    }
+    let (rows, _) = run.read_table::<CorrelationRow>("characterise", CORRELATION_FILE)?;
+    let correlations = Correlations::of(rows, parameters.longest_lag_mm);
+    let (mut scales, mut fits, mut fitted, mut warnings) = (vec![], vec![], vec![], vec![]);
+    for &waves in &parameters.waves {
+        context.check_interrupt()?;
+        let in_this = |source| StageError::SineFit { waves, source };
+        let base = parameters.shortest_wavelength_mm.map(|mm| mm / 1e3);
+        let (spacing, window) = (correlations.spacing, correlations.window_length);
+        let (wavelengths, beyond) = Ladder::new(base, spacing, waves as usize)?.for_scans(
+            spacing,
+            window,
+            parameters.undetermined,
+        )?;
+        let fit = fit_sines(&correlations.average, &wavelengths).map_err(in_this)?;
+        let intervals = correlations.jackknife(&fit, &wavelengths).map_err(in_this)?;
+        let beyond: Vec<String> = beyond.iter().map(ToString::to_string).collect();
+        warnings.extend(beyond.iter().map(|warning| format!("{waves} waves: {warning}")));
+        scales.extend(scale_rows(waves, &fit, &intervals));
+        fits.push(fit_row(waves, &fit, beyond.join("; ")));
+        fitted.extend(fitted_rows(waves, &fit, &correlations.average));
+    }
+    let metadata: Metadata = warnings
+        .iter()
+        .enumerate()
+        .map(|(i, w)| (format!("warning {}", i + 1), w.clone()))
+        .collect();
+    context.pending.write_table(WAVES_FILE, &scales, &metadata)?;
+    context.pending.write_table(FITS_FILE, &fits, &metadata)?;
+    context.pending.write_table(FITTED_FILE, &fitted, &metadata)?;
+    Ok(warnings)
+}
+
+/// Writes the waves that the recipe states itself; there is no fit to report.
+fn write_given(parameters: &Approximate, context: &mut Context) -> Result<Vec<String>, StageError> {
+    let rows = parameters.given.iter().flat_map(|given| {
+        (1..).zip(&given.scales).map(|(number, scale)| {
+            let sine = SineScale {
+                wavelength: scale.wavelength_mm / 1e3,
+                amplitude: scale.amplitude_mm / 1e3,
+            };
+            ScaleRow {
+                waves: given.number(),
+                scale: number,
+                wavelength_mm: scale.wavelength_mm,
+                amplitude_mm: scale.amplitude_mm,
+                amplitude_confidence_95_mm: None,
+                rms_slope: sine.rms_slope(),
+            }
+        })
+    });
+    let rows: Vec<_> = rows.collect();
+    let source = |given: &GivenWaves| (format!("source {}", given.number()), given.source.clone());
+    let metadata: Metadata = parameters.given.iter().map(source).collect();
+    context.pending.write_table(WAVES_FILE, &rows, &metadata)?;
+    Ok(Vec::new())
+}
+
+/// The correlations of the run, average and per window, at the same lags.
+struct Correlations {
+    average: Vec<CorrelationSample>,
+    windows: Vec<Vec<CorrelationSample>>,
+    /// Sample spacing in m: the shortest lag.
+    spacing: f64,
+    /// Length of a window in m.
+    window_length: f64,
+}
+
+impl Correlations {
+    fn of(rows: Vec<CorrelationRow>, longest_lag_mm: Option<f64>) -> Self {
+        let mut by_scan: BTreeMap<String, Vec<CorrelationSample>> = BTreeMap::new();
+        let mut longest = 0.0_f64;
+        for row in rows {
+            longest = longest.max(row.lag_mm / 1e3);
+            // Log-spaced lags must be positive, and so must a correlation whose log is fitted.
+            let within = longest_lag_mm.is_none_or(|limit| row.lag_mm <= limit * (1.0 + 1e-9));
+            if within && row.lag_mm > 0.0 {
+                by_scan.entry(row.scan).or_default().push(CorrelationSample {
+                    lag: row.lag_mm / 1e3,
+                    value: row.correlation_mm2 / 1e6,
+                    pairs: row.pairs,
+                });
+            }
+        }
+        let average = by_scan.remove(AVERAGE).unwrap_or_default();
+        let spacing = average.first().map_or(0.0, |sample| sample.lag);
+        let windows: Vec<_> = by_scan.into_values().collect();
+        // A window of n points has n pairs at lag 0, one fewer at the first lag.
+        let window_length = 2.0 * longest;
+        Self { average, windows, spacing, window_length }
+    }
+
+    /// Half widths of the 95 % intervals of the amplitudes: each window is left out in turn.
+    fn jackknife(
+        &self,
+        fit: &SineFit,
+        wavelengths: &[f64],
+    ) -> Result<Vec<Option<f64>>, crate::surface::sine_fit::SineFitError> {
+        let n = self.windows.len();
+        if n < 3 {
+            return Ok(vec![None; fit.scales.len()]);
+        }
+        let replicates: Vec<Vec<f64>> = (0..n)
+            .into_par_iter()
+            .map(|left_out| {
+                let fit = fit_sines(&self.without(left_out), wavelengths)?;
+                Ok(fit.sine_scales().iter().map(|scale| scale.amplitude).collect())
+            })
+            .collect::<Result<_, _>>()?;
+        let count = n as f64;
+        let half_width = |i: usize| {
+            let mean = replicates.iter().map(|r| r[i]).sum::<f64>() / count;
+            let squares: f64 = replicates.iter().map(|r| (r[i] - mean).powi(2)).sum();
+            student_t_975(count - 1.0) * ((count - 1.0) / count * squares).sqrt()
+        };
+        Ok((0..fit.scales.len()).map(|i| Some(half_width(i))).collect())
+    }
+
+    /// The average without one window: its sums are taken off those of all.
+    fn without(&self, left_out: usize) -> Vec<CorrelationSample> {
+        let gone = &self.windows[left_out];
+        let of_lag = |lag: f64| gone.iter().find(|sample| sample.lag == lag);
+        let rest = |sample: &CorrelationSample| {
+            let Some(gone) = of_lag(sample.lag) else { return Some(*sample) };
+            let pairs = sample.pairs.checked_sub(gone.pairs).filter(|pairs| *pairs > 0)?;
+            let sum = sample.value * sample.pairs as f64 - gone.value * gone.pairs as f64;
+            Some(CorrelationSample { lag: sample.lag, value: sum / pairs as f64, pairs })
+        };
+        self.average.iter().filter_map(rest).collect()
+    }
+}
+
+fn scale_rows(waves: u32, fit: &SineFit, intervals: &[Option<f64>]) -> Vec<ScaleRow> {
+    (1..)
+        .zip(fit.sine_scales())
+        .zip(intervals)
+        .map(|((number, scale), interval)| ScaleRow {
+            waves,
+            scale: number,
+            wavelength_mm: scale.wavelength * 1e3,
+            amplitude_mm: scale.amplitude * 1e3,
+            amplitude_confidence_95_mm: interval.map(|half_width| half_width * 1e3),
+            rms_slope: scale.rms_slope(),
+        })
+        .collect()
+}
+
+fn fit_row(waves: u32, fit: &SineFit, warnings: String) -> FitRow {
+    FitRow {
+        waves,
+        waves_fitted: fit.scales.len() as u32,
+        rms_residual_log10: fit.rms_residual,
+        condition_number: fit.condition_number,
+        gradient_norm: fit.gradient_norm,
+        iterations: fit.iterations,
+        lags: fit.lags as u64,
+        warnings,
+    }
+}
+
+fn fitted_rows(waves: u32, fit: &SineFit, average: &[CorrelationSample]) -> Vec<FittedRow> {
+    let scales = fit.sine_scales();
+    let row = |sample: &CorrelationSample| FittedRow {
+        waves,
+        lag_mm: sample.lag * 1e3,
+        measured_mm2: sample.value * 1e6,
+        fitted_mm2: superposed_correlation(&scales, sample.lag) * 1e6,
+    };
+    average.iter().map(row).collect()
+}

@@ -1,0 +1,295 @@
+//! bem: sliding contact of the viscoelastic half-space, for every realisation and speed.
+
+mod curve;
+
+use super::realise::{Surface, read_surfaces};
+use super::{Context, StageError, schema_of};
+use crate::artifact::{ArrayDataset, Metadata, Pending, Row, RunView, SchemaVersion, SolveStore};
+use crate::contact::CurveValue;
+use crate::recipe::{Violation, demand};
+use crate::rubber::{Rubber, read_rubber};
+use curve::{Curve, FieldSolution};
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[bem]` of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bem {
+    /// Rubber file.
+    pub rubber: PathBuf,
+    /// Sliding speeds in mm/s.
+    pub speeds_mm_s: Vec<f64>,
+    /// Contact area fractions at which friction is wanted, ascending.
+    #[serde(default = "published_area_fractions")]
+    pub area_fractions: Vec<f64>,
+    /// Relative accuracy of friction by interpolation between solved pressures.
+    #[serde(default = "default_tolerance")]
+    pub tolerance: f64,
+    /// Grid points per shortest wavelength, at least; the grid is the next power of two.
+    #[serde(default = "default_points")]
+    pub points_per_shortest_wavelength: u32,
+    /// A contact of fewer grid points than this is solved again on twice as many, up to 16 times
+    /// as many: small contacts are a few points on a grid that suits large ones.
+    #[serde(default = "default_contact_points")]
+    pub fewest_contact_points: u32,
+    /// Contact area fractions at which pressure and separation are kept as fields; none by
+    /// default.
+    #[serde(default)]
+    pub field_area_fractions: Vec<f64>,
+}
+
+fn published_area_fractions() -> Vec<f64> {
+    vec![0.002, 0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1]
+}
+
+fn default_tolerance() -> f64 {
+    1e-3
+}
+
+fn default_points() -> u32 {
+    64
+}
+
+fn default_contact_points() -> u32 {
+    100
+}
+
+impl Bem {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        let speeds = &self.speeds_mm_s;
+        let positive = speeds.iter().all(|v| *v > 0.0 && v.is_finite());
+        let valid = !speeds.is_empty() && positive && no_repeats(speeds);
+        demand(valid, "bem.speeds_mm_s", speeds, "positive speeds, each once")?;
+        for (key, areas) in [
+            ("bem.area_fractions", &self.area_fractions),
+            ("bem.field_area_fractions", &self.field_area_fractions),
+        ] {
+            let ascending = areas.windows(2).all(|w| w[0] < w[1]);
+            let inside = areas.iter().all(|a| *a > 0.0 && *a < 1.0);
+            demand(ascending && inside, key, areas, "ascending, between 0 and 1")?;
+        }
+        let areas = &self.area_fractions;
+        demand(!areas.is_empty(), "bem.area_fractions", areas, "at least one")?;
+        let range = areas[0]..=areas[areas.len() - 1];
+        let fields = &self.field_area_fractions;
+        let within = fields.iter().all(|a| range.contains(a));
+        demand(
+            within,
+            "bem.field_area_fractions",
+            fields,
+            "within the range of bem.area_fractions",
+        )?;
+        let tolerance = self.tolerance;
+        demand(
+            (1e-6..=0.1).contains(&tolerance),
+            "bem.tolerance",
+            tolerance,
+            "between 1e-6 and 0.1",
+        )?;
+        let points = self.points_per_shortest_wavelength;
+        let key = "bem.points_per_shortest_wavelength";
+        demand((4..=65536).contains(&points), key, points, "4 to 65536")
+    }
+
+    /// The parameters with the rubber itself in place of its file: what the results depend on.
+    pub fn resolved(&self, rubber: &Rubber) -> Value {
+        let mut value = json!(self);
+        value["rubber"] = json!(rubber);
+        value
+    }
+}
+
+fn no_repeats(values: &[f64]) -> bool {
+    values.iter().enumerate().all(|(i, a)| values[..i].iter().all(|b| a != b))
+}
+
+/// Reads the rubber of a recipe.
+///
+/// # Errors
+/// [`StageError::Rubber`].
+pub fn rubber(parameters: &Bem) -> Result<Rubber, StageError> {
+    Ok(read_rubber(&parameters.rubber)?)
+}
+
+/// All solves: `solves.arrow`.
+pub const SOLVES_FILE: &str = "solves.arrow";
+/// Friction at the wanted contact areas: `curves.arrow`.
+pub const CURVES_FILE: &str = "curves.arrow";
+/// Pressure and separation on request: `fields.h5`.
+pub const FIELDS_FILE: &str = "fields.h5";
+/// Schema name of [`FIELDS_FILE`].
+pub const FIELDS_SCHEMA: &str = "asperity.bem.fields";
+/// Schema version of [`FIELDS_FILE`].
+pub const FIELDS_VERSION: u32 = 1;
+
+/// One solved contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SolveRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Mean pressure.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_coefficient: f64,
+    /// Friction coefficient from the hysteretic power of the pressure spectrum; the difference to
+    /// the friction coefficient measures the grid.
+    #[schemars(extend("unit" = "1"))]
+    pub hysteretic_friction: f64,
+    /// Contact area fraction.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Mean separation.
+    #[schemars(extend("unit" = "mm"))]
+    pub mean_separation_mm: f64,
+    /// Residual of the contact conditions, relative.
+    #[schemars(extend("unit" = "1"))]
+    pub residual: f64,
+    /// Active-set iterations on the finest grid.
+    pub iterations: u64,
+    /// Grid points.
+    pub grid_points: u64,
+    /// Wall time of the solve.
+    #[schemars(extend("unit" = "s", "volatile" = true))]
+    pub seconds: f64,
+}
+
+impl Row for SolveRow {
+    const SCHEMA: &'static str = "asperity.bem.solves";
+    const VERSION: u32 = 1;
+}
+
+/// Friction of one realisation at one wanted contact area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CurveRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Contact area fraction.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Mean pressure, interpolated.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient, interpolated.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_coefficient: f64,
+    /// Estimated error of the friction coefficient by interpolation, absolute.
+    #[schemars(extend("unit" = "1"))]
+    pub interpolation_error: f64,
+}
+
+impl Row for CurveRow {
+    const SCHEMA: &'static str = "asperity.bem.curves";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    let fields = SchemaVersion { schema: FIELDS_SCHEMA.into(), version: FIELDS_VERSION };
+    vec![schema_of::<SolveRow>(), schema_of::<CurveRow>(), fields]
+}
+
+/// Solves the contacts that are not in the store and writes the results; returns warnings.
+///
+/// Realisations and speeds run side by side; each curve is computed by itself, so the numbers do
+/// not depend on the number of threads.
+///
+/// # Errors
+/// [`StageError::Contact`] for the first curve, in their order, that cannot be had;
+/// [`StageError::Interrupted`]. Solves that are done are kept in the store.
+pub fn run(
+    parameters: &Bem,
+    rubber: &Rubber,
+    run: &RunView,
+    store: &SolveStore,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let surfaces = read_surfaces(run)?;
+    let tasks: Vec<(&Surface, f64)> = surfaces
+        .iter()
+        .flat_map(|surface| parameters.speeds_mm_s.iter().map(move |speed| (surface, *speed)))
+        .collect();
+    let done = AtomicU64::new(0);
+    let total = tasks.len() as u64;
+    (context.progress)(0, total);
+    let results: Vec<CurveResult> = tasks
+        .par_iter()
+        .map(|(surface, speed)| {
+            context.check_interrupt()?;
+            let result = one_curve(parameters, rubber, surface, *speed, store, context)?;
+            (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
+            Ok(result)
+        })
+        .collect::<Result<_, StageError>>()?;
+    write(&mut context.pending, &results)
+}
+
+/// The solves, the curve and the fields of one surface at one speed.
+struct CurveResult {
+    solves: Vec<SolveRow>,
+    values: Vec<CurveRow>,
+    fields: Vec<FieldSolution>,
+}
+
+fn one_curve(
+    parameters: &Bem,
+    rubber: &Rubber,
+    surface: &Surface,
+    speed_mm_s: f64,
+    store: &SolveStore,
+    context: &Context,
+) -> Result<CurveResult, StageError> {
+    let mut curve = Curve::new(parameters, rubber, surface, speed_mm_s, store, context.interrupted);
+    let (values, fields) = curve.compute(parameters).map_err(|source| {
+        if context.check_interrupt().is_err() {
+            return StageError::Interrupted;
+        }
+        let (waves, realisation) = (surface.waves, surface.realisation);
+        StageError::Contact { waves, realisation, speed_mm_s, source: Box::new(source) }
+    })?;
+    let row = |value: &CurveValue| CurveRow {
+        waves: surface.waves,
+        realisation: surface.realisation,
+        speed_mm_s,
+        contact_area_fraction: value.contact_area_fraction,
+        pressure_mpa: value.mean_pressure / 1e6,
+        friction_coefficient: value.friction_coefficient,
+        interpolation_error: value.interpolation_error,
+    };
+    let values = values.iter().map(row).collect();
+    Ok(CurveResult { solves: curve.into_solves(), values, fields })
+}
+
+fn write(pending: &mut Pending, results: &[CurveResult]) -> Result<Vec<String>, StageError> {
+    let none = Metadata::new();
+    let solves: Vec<_> = results.iter().flat_map(|r| r.solves.iter().cloned()).collect();
+    pending.write_table(SOLVES_FILE, &solves, &none)?;
+    let values: Vec<_> = results.iter().flat_map(|r| r.values.iter().cloned()).collect();
+    pending.write_table(CURVES_FILE, &values, &none)?;
+    let fields: Vec<ArrayDataset> =
+        results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
+    if !fields.is_empty() {
+        let description = "pressure and separation over one period of the profile";
+        pending.write_arrays(FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, description, &fields)?;
+    }
+    Ok(Vec::new())
+}

@@ -1,0 +1,238 @@
+//! One curve of friction over contact area: one surface at one speed.
+
+use super::{Bem, SolveRow};
+use crate::artifact::{ArrayDataset, Attribute, Digest, SolveStore};
+use crate::contact::curve::{CurveError, friction_curve};
+use crate::contact::{ContactSolution, CurvePoint, CurveValue, SlidingContact};
+use crate::rubber::Rubber;
+use crate::stages::SolveError;
+use crate::stages::realise::Surface;
+use crate::surface::wave;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Revision of the contact solver: part of the key of every stored solve. To be raised when the
+/// same problem gives another number.
+const SOLVER_REVISION: u32 = 1;
+
+/// The grid may be refined this many times for small contacts.
+const MOST_REFINEMENTS: u32 = 4;
+
+/// Solves one surface at one speed and keeps what it solved.
+pub(super) struct Curve<'a> {
+    rubber: &'a Rubber,
+    surface: &'a Surface,
+    speed_mm_s: f64,
+    fewest_contact_points: f64,
+    base_points: usize,
+    period: f64,
+    store: &'a SolveStore,
+    interrupted: &'a AtomicBool,
+    /// Contacts by their number of grid points, set up when first needed.
+    contacts: BTreeMap<usize, SlidingContact>,
+    solves: Vec<SolveRow>,
+}
+
+/// Fields of a contact at a wanted area.
+pub(super) struct FieldSolution {
+    group: String,
+    area_fraction: f64,
+    spacing: f64,
+    solution: ContactSolution,
+}
+
+impl<'a> Curve<'a> {
+    pub fn new(
+        parameters: &Bem,
+        rubber: &'a Rubber,
+        surface: &'a Surface,
+        speed_mm_s: f64,
+        store: &'a SolveStore,
+        interrupted: &'a AtomicBool,
+    ) -> Self {
+        let present = || surface.profile.iter().filter(|wave| wave.amplitude != 0.0);
+        let shortest = present().map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
+        let period = surface.profile.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let per_wave = f64::from(parameters.points_per_shortest_wavelength);
+        let base_points = ((per_wave * period / shortest).round() as usize).next_power_of_two();
+        Self {
+            rubber,
+            surface,
+            speed_mm_s,
+            fewest_contact_points: f64::from(parameters.fewest_contact_points),
+            base_points,
+            period,
+            store,
+            interrupted,
+            contacts: BTreeMap::new(),
+            solves: Vec::new(),
+        }
+    }
+
+    /// Friction at the wanted areas, and the fields where they are wanted.
+    pub fn compute(
+        &mut self,
+        parameters: &Bem,
+    ) -> Result<(Vec<CurveValue>, Vec<FieldSolution>), CurveError<SolveError>> {
+        let guess = self.first_guess(parameters.area_fractions[0]);
+        let curve = |targets: &[f64], this: &mut Self| {
+            friction_curve(targets, parameters.tolerance, guess, |p| this.point(p))
+        };
+        let values = curve(&parameters.area_fractions, self)?;
+        if parameters.field_area_fractions.is_empty() {
+            return Ok((values, Vec::new()));
+        }
+        // The solves are in the store by now, so this second curve costs next to nothing.
+        let wanted = curve(&parameters.field_area_fractions, self)?;
+        let fields = wanted.iter().map(|value| self.field(value)).collect::<Result<_, _>>();
+        Ok((values, fields.map_err(CurveError::Solve)?))
+    }
+
+    /// All solves of the curve by ascending pressure, each once.
+    pub fn into_solves(mut self) -> Vec<SolveRow> {
+        self.solves.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
+        self.solves.dedup_by(|a, b| a.pressure_mpa == b.pressure_mpa);
+        self.solves
+    }
+
+    /// Pressure at which the area is about `area`: an elastic rough contact of small area carries
+    /// `p = A |E_r| h' / 2` (slope of Bush, Gibson & Thomas, doi:10.1016/0043-1648(75)90145-3),
+    /// taken with the modulus at the frequency of the steepest wave. Only a start.
+    fn first_guess(&self, area: f64) -> f64 {
+        let slope = |wave: &wave::Wave| wave.amplitude / wave.wavelength;
+        let profile = &self.surface.profile;
+        let Some(steepest) = profile.iter().max_by(|a, b| slope(a).total_cmp(&slope(b))) else {
+            return 1e5;
+        };
+        let frequency = TAU / steepest.wavelength * self.speed_mm_s / 1e3;
+        let rms_slope = profile.iter().map(|w| (TAU * slope(w)).powi(2) / 2.0).sum::<f64>().sqrt();
+        0.5 * area * self.rubber.reduced_modulus(frequency).norm() * rms_slope
+    }
+
+    /// One pressure, on a grid that is fine enough for its contact.
+    fn point(&mut self, pressure: f64) -> Result<CurvePoint, SolveError> {
+        let mut points = self.base_points;
+        for _ in 0..MOST_REFINEMENTS {
+            let row = self.solve(pressure, points)?;
+            if row.contact_area_fraction * points as f64 >= self.fewest_contact_points {
+                return Ok(self.keep(row));
+            }
+            points *= 2;
+        }
+        let row = self.solve(pressure, points)?;
+        Ok(self.keep(row))
+    }
+
+    fn keep(&mut self, row: SolveRow) -> CurvePoint {
+        let point = CurvePoint {
+            mean_pressure: row.pressure_mpa * 1e6,
+            contact_area_fraction: row.contact_area_fraction,
+            friction_coefficient: row.friction_coefficient,
+        };
+        self.solves.push(row);
+        point
+    }
+
+    /// One solve, from the store if it is there.
+    fn solve(&mut self, pressure: f64, points: usize) -> Result<SolveRow, SolveError> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(SolveError::Interrupted);
+        }
+        let key = self.key(pressure, points);
+        if let Some(row) = self.store.get::<SolveRow>(&key)? {
+            // The name of the approximation and the number of the realisation are no part of the
+            // problem, so the same surface may have been solved under others.
+            let (waves, realisation) = (self.surface.waves, self.surface.realisation);
+            return Ok(SolveRow { waves, realisation, ..row });
+        }
+        let start = Instant::now();
+        let solution = self.contact(points)?.solve(pressure)?;
+        let row = SolveRow {
+            waves: self.surface.waves,
+            realisation: self.surface.realisation,
+            speed_mm_s: self.speed_mm_s,
+            pressure_mpa: pressure / 1e6,
+            friction_coefficient: solution.friction_coefficient,
+            hysteretic_friction: solution.hysteretic_friction,
+            contact_area_fraction: solution.contact_area_fraction,
+            mean_separation_mm: solution.mean_separation * 1e3,
+            residual: solution.residual,
+            iterations: solution.iterations as u64,
+            grid_points: points as u64,
+            seconds: start.elapsed().as_secs_f64(),
+        };
+        self.store.put(&key, &row)?;
+        Ok(row)
+    }
+
+    fn contact(&mut self, points: usize) -> Result<&mut SlidingContact, SolveError> {
+        use std::collections::btree_map::Entry;
+        match self.contacts.entry(points) {
+            Entry::Occupied(contact) => Ok(contact.into_mut()),
+            Entry::Vacant(place) => {
+                let heights = wave::sample(&self.surface.profile, self.period, points);
+                let speed = self.speed_mm_s / 1e3;
+                Ok(place.insert(SlidingContact::new(self.rubber, speed, self.period, &heights)?))
+            }
+        }
+    }
+
+    /// Digest of all that determines a solve.
+    fn key(&self, pressure: f64, points: usize) -> Digest {
+        Digest::of_value(&json!({
+            "solver": ["bem", SOLVER_REVISION],
+            "equilibrium_modulus": self.rubber.equilibrium_modulus,
+            "branches": self.rubber.branches,
+            "poisson_ratio": self.rubber.poisson_ratio,
+            "profile": self.surface.profile,
+            "speed_mm_s": self.speed_mm_s,
+            "pressure": pressure,
+            "points": points,
+        }))
+    }
+
+    fn field(&mut self, value: &CurveValue) -> Result<FieldSolution, SolveError> {
+        let points = self.base_points;
+        let solution = self.contact(points)?.solve(value.mean_pressure)?;
+        let area_fraction = value.contact_area_fraction;
+        let Surface { waves, realisation, .. } = self.surface;
+        let group = format!(
+            "waves_{waves}/realisation_{realisation}/speed_{}_mm_s/area_{area_fraction}",
+            self.speed_mm_s
+        );
+        Ok(FieldSolution { group, area_fraction, spacing: self.period / points as f64, solution })
+    }
+}
+
+impl FieldSolution {
+    /// The fields as datasets.
+    pub fn datasets(&self) -> Vec<ArrayDataset> {
+        let attributes = BTreeMap::from([
+            ("spacing_m".to_owned(), Attribute::Float(self.spacing)),
+            ("mean_pressure_pa".to_owned(), Attribute::Float(self.solution.mean_pressure)),
+            ("wanted_area_fraction".to_owned(), Attribute::Float(self.area_fraction)),
+            (
+                "contact_area_fraction".to_owned(),
+                Attribute::Float(self.solution.contact_area_fraction),
+            ),
+            (
+                "friction_coefficient".to_owned(),
+                Attribute::Float(self.solution.friction_coefficient),
+            ),
+            ("mean_separation_m".to_owned(), Attribute::Float(self.solution.mean_separation)),
+        ]);
+        let dataset = |name: &str, unit: &str, values: &[f64]| ArrayDataset {
+            name: format!("{}/{name}", self.group),
+            unit: unit.to_owned(),
+            attributes: attributes.clone(),
+            values: values.to_vec(),
+        };
+        vec![
+            dataset("pressure", "Pa", &self.solution.pressure),
+            dataset("separation", "m", &self.solution.separation),
+        ]
+    }
+}

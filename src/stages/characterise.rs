@@ -1,0 +1,430 @@
+//! characterise: roughness parameters, height-difference correlation, spectrum, self-affine fit.
+
+use super::ingest::read_windows;
+use super::{Context, StageError, schema_of};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use crate::numerics::statistics::MeanEstimate;
+use crate::recipe::{Violation, demand};
+use crate::surface::correlation::{HeightDifferenceCorrelation, correlate_scans};
+use crate::surface::parameters::{AverageRoughness, RoughnessParameters};
+use crate::surface::self_affine::{ConfidenceInterval, LagRange, SelfAffineFit, fit_self_affine};
+use crate::surface::spectrum::{PowerSpectrum, Route, Window, power_spectra};
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[characterise]` of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Characterise {
+    /// Lags a decade at which the correlation is kept.
+    pub lags_per_decade: usize,
+    /// Longest lag in millimetres; half a window if not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub longest_lag_mm: Option<f64>,
+    /// Bins a decade of the averaged spectrum.
+    pub spectrum_bins_per_decade: usize,
+    /// Window of the spectrum where a scan has no gaps: `none` or `hann`.
+    pub spectrum_window: SpectrumWindow,
+    /// Shortest lag of the self-affine fit in millimetres; one spacing if not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub self_affine_shortest_lag_mm: Option<f64>,
+    /// Longest lag of the self-affine fit in millimetres; that of the correlation if not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub self_affine_longest_lag_mm: Option<f64>,
+}
+
+/// Window of the spectrum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SpectrumWindow {
+    /// None: Parseval holds exactly.
+    None,
+    /// Hann, normalised to the same power.
+    Hann,
+}
+
+impl Default for Characterise {
+    fn default() -> Self {
+        Self {
+            lags_per_decade: 20,
+            longest_lag_mm: None,
+            spectrum_bins_per_decade: 10,
+            spectrum_window: SpectrumWindow::Hann,
+            self_affine_shortest_lag_mm: None,
+            self_affine_longest_lag_mm: None,
+        }
+    }
+}
+
+impl Characterise {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        let count = "a whole number from 2 to 1000";
+        let lags = self.lags_per_decade;
+        demand((2..=1000).contains(&lags), "characterise.lags_per_decade", lags, count)?;
+        let bins = self.spectrum_bins_per_decade;
+        demand((2..=1000).contains(&bins), "characterise.spectrum_bins_per_decade", bins, count)?;
+        for (key, value) in [
+            ("characterise.longest_lag_mm", self.longest_lag_mm),
+            ("characterise.self_affine_shortest_lag_mm", self.self_affine_shortest_lag_mm),
+            ("characterise.self_affine_longest_lag_mm", self.self_affine_longest_lag_mm),
+        ] {
+            let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
+            demand(positive, key, value, "it must be positive")?;
+        }
+        Ok(())
+    }
+}
+
+/// Parameters of each window: `parameters.arrow`.
+pub const PARAMETERS_FILE: &str = "parameters.arrow";
+/// Averages of the parameters: `averages.arrow`.
+pub const AVERAGES_FILE: &str = "averages.arrow";
+/// Correlation at log-spaced lags, per window and averaged: `correlation.arrow`.
+pub const CORRELATION_FILE: &str = "correlation.arrow";
+/// Spectrum in log-spaced bins, per window and averaged: `spectrum.arrow`.
+pub const SPECTRUM_FILE: &str = "spectrum.arrow";
+/// Self-affine fit, per window and averaged: `self_affine.arrow`.
+pub const SELF_AFFINE_FILE: &str = "self_affine.arrow";
+/// What stands in the column `scan` for the average over all windows.
+pub const AVERAGE: &str = "average";
+
+/// Roughness parameters of one window (thesis 3.2.1-7).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ParametersRow {
+    /// Name of the window.
+    pub scan: String,
+    /// Ra, mean absolute height.
+    #[schemars(extend("unit" = "mm"))]
+    pub ra_mm: f64,
+    /// Rq, root mean square height.
+    #[schemars(extend("unit" = "mm"))]
+    pub rq_mm: f64,
+    /// Rp, highest peak.
+    #[schemars(extend("unit" = "mm"))]
+    pub rp_mm: f64,
+    /// Rv, deepest valley, negative.
+    #[schemars(extend("unit" = "mm"))]
+    pub rv_mm: f64,
+    /// Rt = Rp - Rv.
+    #[schemars(extend("unit" = "mm"))]
+    pub rt_mm: f64,
+    /// Rsk, skewness; negative for few deep valleys below a flattened top.
+    #[schemars(extend("unit" = "1"))]
+    pub rsk: f64,
+    /// Rku, kurtosis; 3 for Gaussian heights.
+    #[schemars(extend("unit" = "1"))]
+    pub rku: f64,
+    /// Root mean square slope from first differences.
+    #[schemars(extend("unit" = "1"))]
+    pub rms_slope: f64,
+}
+
+impl Row for ParametersRow {
+    const SCHEMA: &'static str = "asperity.characterise.parameters";
+    const VERSION: u32 = 1;
+}
+
+/// Average of one roughness parameter over the windows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AverageRow {
+    /// Name of the parameter, with its unit.
+    pub parameter: String,
+    /// Mean over the windows, in the unit of the parameter.
+    #[schemars(extend("unit" = "see parameter"))]
+    pub mean: f64,
+    /// Standard deviation over the windows; absent for fewer than two.
+    #[schemars(extend("unit" = "see parameter"))]
+    pub standard_deviation: Option<f64>,
+    /// Half width of the 95 % confidence interval of the mean; absent for fewer than two.
+    #[schemars(extend("unit" = "see parameter"))]
+    pub confidence_95: Option<f64>,
+    /// Number of windows.
+    pub windows: u64,
+}
+
+impl Row for AverageRow {
+    const SCHEMA: &'static str = "asperity.characterise.averages";
+    const VERSION: u32 = 1;
+}
+
+/// Height-difference correlation at one lag: mean of `(z(x + s) - z(x))²` over pairs of valid
+/// points (3.3.1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CorrelationRow {
+    /// Name of the window, or `average` over all pairs of all windows.
+    pub scan: String,
+    /// Lag s.
+    #[schemars(extend("unit" = "mm"))]
+    pub lag_mm: f64,
+    /// Height-difference correlation C(s).
+    #[schemars(extend("unit" = "mm^2"))]
+    pub correlation_mm2: f64,
+    /// Pairs of valid points at this lag.
+    pub pairs: u64,
+}
+
+impl Row for CorrelationRow {
+    const SCHEMA: &'static str = "asperity.characterise.correlation";
+    const VERSION: u32 = 1;
+}
+
+/// One-sided power spectral density: its integral over positive wavenumbers (rad/m) is the mean
+/// square height.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SpectrumRow {
+    /// Name of the window, or `average` over all windows.
+    pub scan: String,
+    /// Mean wavenumber q = 2 π / λ of the bin.
+    #[schemars(extend("unit" = "rad/mm"))]
+    pub wavenumber_rad_mm: f64,
+    /// Mean power spectral density of the bin; from gappy scans single values can be negative.
+    #[schemars(extend("unit" = "mm^3"))]
+    pub density_mm3: f64,
+    /// Frequencies in the bin.
+    pub frequencies: u64,
+    /// `periodogram none`, `periodogram hann`, `blackman-tukey`, or a list where windows differ.
+    pub route: String,
+}
+
+impl Row for SpectrumRow {
+    const SCHEMA: &'static str = "asperity.characterise.spectrum";
+    const VERSION: u32 = 1;
+}
+
+/// Self-affine fit of the correlation (3.3.2-3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SelfAffineRow {
+    /// Name of the window, or `average`.
+    pub scan: String,
+    /// Hurst exponent H.
+    #[schemars(extend("unit" = "1"))]
+    pub hurst_exponent: f64,
+    /// Lower limit of the 95 % interval of H, jackknife over windows; absent for one window.
+    #[schemars(extend("unit" = "1"))]
+    pub hurst_exponent_lower: Option<f64>,
+    /// Upper limit of the 95 % interval of H.
+    #[schemars(extend("unit" = "1"))]
+    pub hurst_exponent_upper: Option<f64>,
+    /// Lateral correlation length, the lag of the bend.
+    #[schemars(extend("unit" = "mm"))]
+    pub parallel_length_mm: f64,
+    /// Lower limit of its 95 % interval.
+    #[schemars(extend("unit" = "mm"))]
+    pub parallel_length_lower_mm: Option<f64>,
+    /// Upper limit of its 95 % interval.
+    #[schemars(extend("unit" = "mm"))]
+    pub parallel_length_upper_mm: Option<f64>,
+    /// Vertical correlation length, the root of the plateau.
+    #[schemars(extend("unit" = "mm"))]
+    pub perpendicular_length_mm: f64,
+    /// Lower limit of its 95 % interval.
+    #[schemars(extend("unit" = "mm"))]
+    pub perpendicular_length_lower_mm: Option<f64>,
+    /// Upper limit of its 95 % interval.
+    #[schemars(extend("unit" = "mm"))]
+    pub perpendicular_length_upper_mm: Option<f64>,
+    /// Whether the plateau lies within the lags; if not, both lengths are lower bounds.
+    pub plateau_found: bool,
+    /// Root mean square residual of log10 C.
+    #[schemars(extend("unit" = "1"))]
+    pub rms_residual_log10: f64,
+}
+
+impl Row for SelfAffineRow {
+    const SCHEMA: &'static str = "asperity.characterise.self_affine";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![
+        schema_of::<ParametersRow>(),
+        schema_of::<AverageRow>(),
+        schema_of::<CorrelationRow>(),
+        schema_of::<SpectrumRow>(),
+        schema_of::<SelfAffineRow>(),
+    ]
+}
+
+/// Characterises the windows of the run and writes the results; returns warnings.
+///
+/// # Errors
+/// [`StageError`]: a window without heights, correlations that cannot be fitted.
+pub fn run(
+    parameters: &Characterise,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let windows = read_windows(run)?;
+    context.check_interrupt()?;
+    let roughness: Vec<_> = windows
+        .par_iter()
+        .map(|window| RoughnessParameters::of(window, 0.0))
+        .collect::<Result<_, _>>()?;
+    let longest_lag = parameters.longest_lag_mm.map(|mm| mm / 1e3);
+    let correlations = correlate_scans(&windows, longest_lag)?;
+    let average = HeightDifferenceCorrelation::average(&correlations)?;
+    context.check_interrupt()?;
+    let window = match parameters.spectrum_window {
+        SpectrumWindow::None => Window::None,
+        SpectrumWindow::Hann => Window::Hann,
+    };
+    let spectra = power_spectra(&windows, &correlations, window)?;
+    let mean_spectrum = PowerSpectrum::average(&spectra)?;
+
+    let names: Vec<&str> = windows.iter().map(|window| window.name.as_str()).collect();
+    let named = |name: &&str| (*name).to_owned();
+    let rows: Vec<_> = names.iter().map(named).zip(&roughness).map(parameters_row).collect();
+    let none = Metadata::new();
+    context.pending.write_table(PARAMETERS_FILE, &rows, &none)?;
+    context.pending.write_table(AVERAGES_FILE, &average_rows(&roughness)?, &none)?;
+
+    let with_average = || names.iter().copied().chain([AVERAGE]);
+    let rows: Vec<_> = with_average()
+        .zip(correlations.iter().chain([&average]))
+        .flat_map(|(name, c)| correlation_rows(name, c, parameters.lags_per_decade))
+        .collect();
+    context.pending.write_table(CORRELATION_FILE, &rows, &none)?;
+    let bins = parameters.spectrum_bins_per_decade;
+    let rows: Vec<_> = with_average()
+        .zip(spectra.iter().chain([&mean_spectrum]))
+        .flat_map(|(name, spectrum)| spectrum_rows(name, spectrum, bins))
+        .collect();
+    context.pending.write_table(SPECTRUM_FILE, &rows, &none)?;
+    let (rows, warnings) = self_affine(parameters, &names, &correlations)?;
+    context.pending.write_table(SELF_AFFINE_FILE, &rows, &none)?;
+    Ok(warnings)
+}
+
+fn parameters_row((scan, roughness): (String, &RoughnessParameters)) -> ParametersRow {
+    ParametersRow {
+        scan,
+        ra_mm: roughness.mean_absolute_height * 1e3,
+        rq_mm: roughness.rms_height * 1e3,
+        rp_mm: roughness.highest_peak * 1e3,
+        rv_mm: roughness.deepest_valley * 1e3,
+        rt_mm: roughness.total_height * 1e3,
+        rsk: roughness.skewness,
+        rku: roughness.kurtosis,
+        rms_slope: roughness.rms_slope,
+    }
+}
+
+fn average_rows(roughness: &[RoughnessParameters]) -> Result<Vec<AverageRow>, StageError> {
+    let average = AverageRoughness::of(roughness)?;
+    let row = |parameter: &str, estimate: MeanEstimate, factor: f64| AverageRow {
+        parameter: parameter.to_owned(),
+        mean: estimate.mean * factor,
+        standard_deviation: finite(estimate.standard_deviation * factor),
+        confidence_95: finite(estimate.confidence_95 * factor),
+        windows: estimate.count as u64,
+    };
+    Ok(vec![
+        row("Ra [mm]", average.mean_absolute_height, 1e3),
+        row("Rq [mm]", average.rms_height, 1e3),
+        row("Rp [mm]", average.highest_peak, 1e3),
+        row("Rv [mm]", average.deepest_valley, 1e3),
+        row("Rt [mm]", average.total_height, 1e3),
+        row("Rsk", average.skewness, 1.0),
+        row("Rku", average.kurtosis, 1.0),
+        row("rms slope", average.rms_slope, 1.0),
+    ])
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn correlation_rows(
+    scan: &str,
+    correlation: &HeightDifferenceCorrelation,
+    per_decade: usize,
+) -> Vec<CorrelationRow> {
+    let samples = correlation.sample_log_spaced(per_decade);
+    let row = |sample: crate::surface::CorrelationSample| CorrelationRow {
+        scan: scan.to_owned(),
+        lag_mm: sample.lag * 1e3,
+        correlation_mm2: sample.value * 1e6,
+        pairs: sample.pairs,
+    };
+    samples.into_iter().map(row).collect()
+}
+
+fn spectrum_rows(scan: &str, spectrum: &PowerSpectrum, per_decade: usize) -> Vec<SpectrumRow> {
+    let mut routes: Vec<&str> = spectrum.routes.iter().map(route_name).collect();
+    routes.sort_unstable();
+    routes.dedup();
+    let route = routes.join(", ");
+    let row = |bin: crate::surface::spectrum::SpectrumBin| SpectrumRow {
+        scan: scan.to_owned(),
+        wavenumber_rad_mm: bin.wavenumber / 1e3,
+        density_mm3: bin.density * 1e9,
+        frequencies: bin.count as u64,
+        route: route.clone(),
+    };
+    spectrum.log_binned(per_decade).into_iter().map(row).collect()
+}
+
+fn route_name(route: &Route) -> &'static str {
+    match route {
+        Route::Periodogram(Window::None) => "periodogram none",
+        Route::Periodogram(Window::Hann) => "periodogram hann",
+        Route::BlackmanTukey { .. } => "blackman-tukey",
+    }
+}
+
+fn self_affine(
+    parameters: &Characterise,
+    names: &[&str],
+    correlations: &[HeightDifferenceCorrelation],
+) -> Result<(Vec<SelfAffineRow>, Vec<String>), StageError> {
+    let spacing = correlations.first().map_or(0.0, |c| c.spacing);
+    let most = correlations.iter().map(|c| c.maximum_lag()).min().unwrap_or(0);
+    let range = LagRange {
+        shortest: parameters.self_affine_shortest_lag_mm.map_or(spacing, |mm| mm / 1e3),
+        longest: parameters.self_affine_longest_lag_mm.map_or(most as f64 * spacing, |mm| mm / 1e3),
+        per_decade: parameters.lags_per_decade,
+    };
+    let mut rows = names
+        .par_iter()
+        .zip(correlations)
+        .map(|(name, c)| {
+            let fit = fit_self_affine(std::slice::from_ref(c), Some(range))?;
+            Ok(self_affine_row(name, &fit))
+        })
+        .collect::<Result<Vec<_>, StageError>>()?;
+    let fit = fit_self_affine(correlations, Some(range))?;
+    rows.push(self_affine_row(AVERAGE, &fit));
+    let mut warnings = Vec::new();
+    if !fit.plateau_found {
+        warnings.push(
+            "the averaged correlation reaches no plateau: both correlation lengths are lower \
+             bounds; use longer windows"
+                .to_owned(),
+        );
+    }
+    Ok((rows, warnings))
+}
+
+fn self_affine_row(scan: &str, fit: &SelfAffineFit) -> SelfAffineRow {
+    let lower = |i: &Option<ConfidenceInterval>, f: f64| i.and_then(|i| finite(i.lower * f));
+    let upper = |i: &Option<ConfidenceInterval>, f: f64| i.and_then(|i| finite(i.upper * f));
+    SelfAffineRow {
+        scan: scan.to_owned(),
+        hurst_exponent: fit.hurst_exponent,
+        hurst_exponent_lower: lower(&fit.hurst_exponent_95, 1.0),
+        hurst_exponent_upper: upper(&fit.hurst_exponent_95, 1.0),
+        parallel_length_mm: fit.lateral_length * 1e3,
+        parallel_length_lower_mm: lower(&fit.lateral_length_95, 1e3),
+        parallel_length_upper_mm: upper(&fit.lateral_length_95, 1e3),
+        perpendicular_length_mm: fit.vertical_length * 1e3,
+        perpendicular_length_lower_mm: lower(&fit.vertical_length_95, 1e3),
+        perpendicular_length_upper_mm: upper(&fit.vertical_length_95, 1e3),
+        plateau_found: fit.plateau_found,
+        rms_residual_log10: fit.rms_residual,
+    }
+}

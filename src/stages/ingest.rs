@@ -1,0 +1,319 @@
+//! ingest: from scan files to windows of equal spacing.
+
+use super::{Context, StageError, schema_of};
+use crate::artifact::{
+    ArrayDataset, Attribute, Digest, Input, Metadata, Row, RunView, SchemaVersion,
+};
+use crate::scans::{TextFormat, parse_text};
+use crate::surface::{Conditioning, ConditioningReport, LineScan, condition};
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[ingest]` of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ingest {
+    /// Scan files, and folders of which every file is a scan.
+    pub scans: Vec<PathBuf>,
+    /// How the text files are to be read.
+    pub text: TextFormat,
+    /// How the scans are brought to equal spacing and freed of faults and form.
+    #[serde(default)]
+    pub conditioning: Conditioning,
+}
+
+/// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
+pub const SCANS_FILE: &str = "scans.h5";
+/// Schema name of [`SCANS_FILE`].
+pub const SCANS_SCHEMA: &str = "asperity.ingest.scans";
+/// Schema version of [`SCANS_FILE`].
+pub const SCANS_VERSION: u32 = 1;
+/// What conditioning did to each scan file: `report.arrow`.
+pub const REPORT_FILE: &str = "report.arrow";
+/// What became of each window: `windows.arrow`.
+pub const WINDOWS_FILE: &str = "windows.arrow";
+
+/// What conditioning did to one scan file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScanReportRow {
+    /// Name of the scan, from its file.
+    pub scan: String,
+    /// Points in the file.
+    pub points_read: u64,
+    /// Points without a height in the file.
+    pub points_missing: u64,
+    /// Points that the spacing asks for and the file does not have.
+    pub points_absent: u64,
+    /// Points outside the valid range.
+    pub points_out_of_range: u64,
+    /// Points removed as spikes.
+    pub spikes: u64,
+    /// Spacing in the file.
+    #[schemars(extend("unit" = "um"))]
+    pub raw_spacing_um: f64,
+    /// Largest distance of a position from equal spacing.
+    #[schemars(extend("unit" = "um"))]
+    pub largest_deviation_um: f64,
+    /// Raw points averaged into one.
+    pub points_per_cell: u64,
+    /// Spacing after resampling.
+    #[schemars(extend("unit" = "um"))]
+    pub spacing_um: f64,
+    /// Windows kept.
+    pub windows_kept: u64,
+    /// Windows rejected.
+    pub windows_rejected: u64,
+}
+
+impl Row for ScanReportRow {
+    const SCHEMA: &'static str = "asperity.ingest.report";
+    const VERSION: u32 = 1;
+}
+
+/// What became of one window of a scan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WindowRow {
+    /// Name of the window.
+    pub window: String,
+    /// Position of its first point on the track.
+    #[schemars(extend("unit" = "mm"))]
+    pub origin_mm: f64,
+    /// Share of missing points.
+    #[schemars(extend("unit" = "1"))]
+    pub missing_share: f64,
+    /// Root mean square of the form removed; absent for rejected windows.
+    #[schemars(extend("unit" = "mm"))]
+    pub form_rms_mm: Option<f64>,
+    /// Why the window was rejected; absent for one that was kept.
+    pub rejected: Option<String>,
+}
+
+impl Row for WindowRow {
+    const SCHEMA: &'static str = "asperity.ingest.windows";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    let scans = SchemaVersion { schema: SCANS_SCHEMA.into(), version: SCANS_VERSION };
+    vec![scans, schema_of::<ScanReportRow>(), schema_of::<WindowRow>()]
+}
+
+/// A scan file with its content.
+pub struct ScanFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Name of the scan, from the file.
+    pub name: String,
+    /// Digest of its bytes.
+    pub digest: Digest,
+}
+
+/// Finds the scan files of `paths`, in the order of their names within each folder, and digests
+/// them.
+///
+/// # Errors
+/// [`StageError::Io`], [`StageError::NoScans`], [`StageError::SameName`].
+pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
+    let mut files = Vec::new();
+    for path in paths {
+        files.extend(files_at(path)?);
+    }
+    if files.is_empty() {
+        return Err(StageError::NoScans { paths: paths.to_vec() });
+    }
+    let mut seen: BTreeMap<String, PathBuf> = BTreeMap::new();
+    for path in &files {
+        if let Some(first) = seen.insert(scan_name(path), path.clone()) {
+            let (name, second) = (scan_name(path), path.clone());
+            return Err(StageError::SameName { name, first, second });
+        }
+    }
+    files
+        .into_par_iter()
+        .map(|path| {
+            let digest = Digest::of_file(&path)?;
+            Ok(ScanFile { name: scan_name(&path), digest, path })
+        })
+        .collect()
+}
+
+fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
+    let io = |source| StageError::Io { path: path.to_owned(), source };
+    if !std::fs::metadata(path).map_err(io)?.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(path).map_err(io)? {
+        let entry = entry.map_err(io)?;
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        if !hidden && entry.path().is_file() {
+            files.push(entry.path());
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn scan_name(path: &Path) -> String {
+    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The scan files as inputs of the stage.
+pub fn inputs(files: &[ScanFile]) -> Vec<Input> {
+    files
+        .iter()
+        .map(|file| Input {
+            name: file.name.clone(),
+            digest: file.digest,
+            origin: Some(file.path.display().to_string()),
+        })
+        .collect()
+}
+
+/// Reads and conditions the scan files and writes the results; returns warnings.
+///
+/// # Errors
+/// The first file, in their order, that cannot be read or conditioned.
+pub fn run(
+    ingest: &Ingest,
+    files: &[ScanFile],
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let done = std::sync::atomic::AtomicU64::new(0);
+    let read: Vec<(Vec<LineScan>, ConditioningReport)> = files
+        .par_iter()
+        .map(|file| {
+            context.check_interrupt()?;
+            let bytes = std::fs::read(&file.path)
+                .map_err(|source| StageError::Io { path: file.path.clone(), source })?;
+            let name = file.path.display().to_string();
+            let mut scan = parse_text(&name, &bytes, &ingest.text)?;
+            scan.name.clone_from(&file.name);
+            let conditioned = condition(&scan, &ingest.conditioning)?;
+            let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            (context.progress)(count, files.len() as u64);
+            Ok(conditioned)
+        })
+        .collect::<Result<_, StageError>>()?;
+    check_equal_grids(read.iter().flat_map(|(windows, _)| windows))?;
+    let datasets: Vec<ArrayDataset> = files
+        .iter()
+        .zip(&read)
+        .flat_map(|(file, (windows, _))| windows.iter().map(|window| dataset(window, file)))
+        .collect();
+    let reports: Vec<&ConditioningReport> = read.iter().map(|(_, report)| report).collect();
+    let description = "line scans on equal spacing, form removed; NaN where a height is missing";
+    let pending = &mut context.pending;
+    pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, description, &datasets)?;
+    let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
+    pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
+    let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
+    pending.write_table(WINDOWS_FILE, &rows, &Metadata::new())?;
+    Ok(warnings(&reports))
+}
+
+fn check_equal_grids<'a>(
+    mut windows: impl Iterator<Item = &'a LineScan>,
+) -> Result<(), StageError> {
+    let Some(first) = windows.next() else { return Ok(()) };
+    // Spacings are fitted to the positions of each file; a difference of a thousandth shifts the
+    // largest lag by less than the resolution of any fit made of it.
+    let differs = |other: &&LineScan| {
+        other.heights.len() != first.heights.len()
+            || (other.spacing / first.spacing - 1.0).abs() > 1e-3
+    };
+    match windows.find(differs) {
+        None => Ok(()),
+        Some(other) => Err(StageError::UnequalScans {
+            scan: first.name.clone(),
+            points: first.heights.len(),
+            spacing_um: first.spacing * 1e6,
+            other: other.name.clone(),
+            other_points: other.heights.len(),
+            other_spacing_um: other.spacing * 1e6,
+        }),
+    }
+}
+
+fn dataset(window: &LineScan, file: &ScanFile) -> ArrayDataset {
+    let attributes = BTreeMap::from([
+        ("spacing_m".to_owned(), Attribute::Float(window.spacing)),
+        ("origin_m".to_owned(), Attribute::Float(window.origin)),
+        ("missing_fraction".to_owned(), Attribute::Float(window.missing_fraction())),
+        ("source".to_owned(), Attribute::Text(file.name.clone())),
+        ("source_digest".to_owned(), Attribute::Text(file.digest.to_string())),
+    ]);
+    let (name, values) = (window.name.clone(), window.heights.clone());
+    ArrayDataset { name, unit: "m".into(), attributes, values }
+}
+
+/// Reads the windows of a run.
+///
+/// # Errors
+/// Those of the store.
+pub fn read_windows(run: &RunView) -> Result<Vec<LineScan>, StageError> {
+    let datasets = run.read_arrays("ingest", SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION)?;
+    let float = |dataset: &ArrayDataset, name: &str| match dataset.attributes.get(name) {
+        Some(Attribute::Float(value)) => *value,
+        // The schema version promises the attribute.
+        _ => f64::NAN,
+    };
+    Ok(datasets
+        .into_iter()
+        .map(|dataset| LineScan {
+            origin: float(&dataset, "origin_m"),
+            spacing: float(&dataset, "spacing_m"),
+            name: dataset.name,
+            heights: dataset.values,
+        })
+        .collect())
+}
+
+fn report_row(report: &ConditioningReport) -> ScanReportRow {
+    let rejected = report.windows.iter().filter(|w| w.rejected.is_some()).count();
+    ScanReportRow {
+        scan: report.scan.clone(),
+        points_read: report.points_read as u64,
+        points_missing: report.points_missing_in_file as u64,
+        points_absent: report.points_absent as u64,
+        points_out_of_range: report.points_out_of_range as u64,
+        spikes: report.spikes as u64,
+        raw_spacing_um: report.raw_spacing_um,
+        largest_deviation_um: report.largest_deviation_um,
+        points_per_cell: report.points_per_cell as u64,
+        spacing_um: report.spacing_um,
+        windows_kept: (report.windows.len() - rejected) as u64,
+        windows_rejected: rejected as u64,
+    }
+}
+
+fn window_rows(report: &ConditioningReport) -> Vec<WindowRow> {
+    let row = |window: &crate::surface::condition::WindowReport| WindowRow {
+        window: window.name.clone(),
+        origin_mm: window.origin_mm,
+        missing_share: window.missing_share,
+        form_rms_mm: window.form.as_ref().map(|form| form.rms_mm),
+        rejected: window.rejected.clone(),
+    };
+    report.windows.iter().map(row).collect()
+}
+
+fn warnings(reports: &[&ConditioningReport]) -> Vec<String> {
+    let windows = reports.iter().flat_map(|report| &report.windows);
+    let total = windows.clone().count();
+    let rejected: Vec<_> = windows.filter(|window| window.rejected.is_some()).collect();
+    let Some(first) = rejected.first() else { return Vec::new() };
+    let reason = first.rejected.as_deref().unwrap_or_default();
+    vec![format!(
+        "{} of {total} windows were rejected, the first, {}, because {reason}",
+        rejected.len(),
+        first.name
+    )]
+}

@@ -1,0 +1,220 @@
+//! The stages, one file each: parameters, row types and one function from inputs to results.
+//!
+//! | stage | reads | writes |
+//! |---|---|---|
+//! | [`ingest`] | scan files | windows of equal spacing (HDF5), a report |
+//! | [`characterise`] | windows | roughness parameters, correlation, spectrum, self-affine fit |
+//! | [`approximate`] | correlation | amplitudes of superposed sines |
+//! | [`realise`] | amplitudes | waves with random phases |
+//! | [`bem`] | waves, rubber | solved contacts, friction over area |
+//! | [`tables`] | friction over area | averages with confidence intervals |
+
+pub mod approximate;
+pub mod bem;
+pub mod characterise;
+pub mod ingest;
+pub mod realise;
+pub mod tables;
+
+use crate::artifact::{ArtifactError, Pending, SchemaVersion};
+use crate::contact::ContactError;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The stages in the order of the data.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum, serde::Serialize,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// Scan files to windows of equal spacing.
+    Ingest,
+    /// Roughness of the windows.
+    Characterise,
+    /// Superposed sines in place of the scans.
+    Approximate,
+    /// Random-phase realisations.
+    Realise,
+    /// Sliding contact of the half-space.
+    Bem,
+    /// Averaged friction tables.
+    Tables,
+}
+
+impl Stage {
+    /// All stages in the order of the data.
+    pub const ALL: [Self; 6] = [
+        Self::Ingest,
+        Self::Characterise,
+        Self::Approximate,
+        Self::Realise,
+        Self::Bem,
+        Self::Tables,
+    ];
+
+    /// Name in recipes, folders and manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ingest => "ingest",
+            Self::Characterise => "characterise",
+            Self::Approximate => "approximate",
+            Self::Realise => "realise",
+            Self::Bem => "bem",
+            Self::Tables => "tables",
+        }
+    }
+}
+
+impl std::fmt::Display for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What a stage is given besides its inputs.
+pub struct Context<'a> {
+    /// The folder of the result under way.
+    pub pending: Pending<'a>,
+    /// Called as work is done: pieces done, pieces known so far.
+    pub progress: &'a (dyn Fn(u64, u64) + Sync),
+    /// Set by the user's interrupt.
+    pub interrupted: &'a AtomicBool,
+}
+
+impl Context<'_> {
+    /// Fails if the user has interrupted.
+    ///
+    /// # Errors
+    /// [`StageError::Interrupted`].
+    pub fn check_interrupt(&self) -> Result<(), StageError> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(StageError::Interrupted);
+        }
+        Ok(())
+    }
+}
+
+/// Schema and version of a row type, for the identity of a result.
+pub fn schema_of<R: crate::artifact::Row>() -> SchemaVersion {
+    SchemaVersion { schema: R::SCHEMA.into(), version: R::VERSION }
+}
+
+/// Why a stage has no result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StageError {
+    /// A file of the run folder.
+    #[error(transparent)]
+    Artifact(#[from] ArtifactError),
+    /// A scan file.
+    #[error(transparent)]
+    Scan(#[from] crate::scans::ScanError),
+    /// A scan that cannot be conditioned.
+    #[error(transparent)]
+    Conditioning(#[from] crate::surface::ConditioningError),
+    /// No scan file was found.
+    #[error("no scan files in {}: give files or folders with files", paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", "))]
+    NoScans {
+        /// Where was looked.
+        paths: Vec<PathBuf>,
+    },
+    /// A path of the recipe cannot be read.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The path.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Two scan files of the same name, which could not be told apart.
+    #[error("two scans are named {name}: {} and {}; rename one of them", first.display(), second.display())]
+    SameName {
+        /// The name.
+        name: String,
+        /// The one file.
+        first: PathBuf,
+        /// The other file.
+        second: PathBuf,
+    },
+    /// Windows of different spacing or length cannot be averaged.
+    #[error(
+        "{scan} has {points} points every {spacing_um} µm, {other} has {other_points} every {other_spacing_um} µm: scans of one run must have the same spacing and length; set ingest.conditioning.window_length_mm and lateral_resolution_um, or run them apart"
+    )]
+    UnequalScans {
+        /// A window.
+        scan: String,
+        /// Its points.
+        points: usize,
+        /// Its spacing in µm.
+        spacing_um: f64,
+        /// Another window.
+        other: String,
+        /// Its points.
+        other_points: usize,
+        /// Its spacing in µm.
+        other_spacing_um: f64,
+    },
+    /// Roughness parameters.
+    #[error(transparent)]
+    Parameter(#[from] crate::surface::parameters::ParameterError),
+    /// Height-difference correlation.
+    #[error(transparent)]
+    Correlation(#[from] crate::surface::correlation::CorrelationError),
+    /// Power spectrum.
+    #[error(transparent)]
+    Spectrum(#[from] crate::surface::spectrum::SpectrumError),
+    /// Self-affine fit.
+    #[error(transparent)]
+    SelfAffine(#[from] crate::surface::self_affine::SelfAffineError),
+    /// Ladder of wavelengths.
+    #[error(transparent)]
+    Ladder(#[from] crate::surface::ladder::LadderError),
+    /// Fit of superposed sines.
+    #[error("fit of {waves} waves: {source}")]
+    SineFit {
+        /// Number of waves.
+        waves: u32,
+        /// Why.
+        source: crate::surface::sine_fit::SineFitError,
+    },
+    /// All fitted amplitudes are zero, or none was fitted.
+    #[error(
+        "the fit of {waves} waves has no wave to realise; fit other wavelengths (approximate.shortest_wavelength_mm)"
+    )]
+    NoWaves {
+        /// Number of waves.
+        waves: u32,
+    },
+    /// A rubber file.
+    #[error(transparent)]
+    Rubber(#[from] crate::rubber::RubberFileError),
+    /// A contact.
+    #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}")]
+    Contact {
+        /// Number of waves.
+        waves: u32,
+        /// Realisation.
+        realisation: u32,
+        /// Speed in mm/s.
+        speed_mm_s: f64,
+        /// Why.
+        source: Box<crate::contact::curve::CurveError<SolveError>>,
+    },
+    /// The user's interrupt.
+    #[error("interrupted; what is done is kept, the same command continues")]
+    Interrupted,
+}
+
+/// Why a single solve has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum SolveError {
+    /// The contact.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// The store of solves.
+    #[error(transparent)]
+    Artifact(#[from] ArtifactError),
+    /// The user's interrupt.
+    #[error("interrupted")]
+    Interrupted,
+}

@@ -1,0 +1,142 @@
+//! realise: surfaces of the fitted waves with random phases.
+
+use super::approximate::{ScaleRow, WAVES_FILE};
+use super::{Context, StageError, schema_of};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use crate::recipe::{Violation, demand};
+use crate::surface::realisation::random_phases;
+use crate::surface::{SineScale, Wave};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[realise]` of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Realise {
+    /// Numbers of waves of the approximations to realise, out of `approximate.waves`.
+    pub waves: Vec<u32>,
+    /// Number of realisations; the average is over them.
+    pub realisations: u32,
+    /// Seed of the phases: same seed, same surfaces, on every machine.
+    pub seed: u64,
+}
+
+impl Realise {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        demand(!self.waves.is_empty(), "realise.waves", &self.waves, "at least one number")?;
+        let count = self.realisations;
+        demand((1..=100_000).contains(&count), "realise.realisations", count, "1 to 100000")?;
+        // TOML's integers are signed.
+        demand(self.seed < 1 << 63, "realise.seed", self.seed, "below 2^63")
+    }
+}
+
+/// The realised waves: `surfaces.arrow`.
+pub const SURFACES_FILE: &str = "surfaces.arrow";
+
+/// One wave `D sin(2 π x / λ + φ)` of a realised surface. SI units, so that the surface reads back
+/// to the last bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SurfaceRow {
+    /// Number of waves of the approximation, its name.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Number of this wave, from the shortest, starting at 1.
+    pub scale: u32,
+    /// Wavelength λ.
+    #[schemars(extend("unit" = "m"))]
+    pub wavelength_m: f64,
+    /// Amplitude D.
+    #[schemars(extend("unit" = "m"))]
+    pub amplitude_m: f64,
+    /// Phase φ.
+    #[schemars(extend("unit" = "rad"))]
+    pub phase_rad: f64,
+}
+
+impl Row for SurfaceRow {
+    const SCHEMA: &'static str = "asperity.realise.surfaces";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![schema_of::<SurfaceRow>()]
+}
+
+/// Draws the phases and writes the surfaces; returns warnings.
+///
+/// # Errors
+/// [`StageError::NoWaves`] for an approximation without a wave of positive amplitude.
+pub fn run(
+    parameters: &Realise,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let (fitted, _) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
+    let mut rows = Vec::new();
+    for &waves in &parameters.waves {
+        let scales: Vec<SineScale> = fitted
+            .iter()
+            .filter(|row| row.waves == waves)
+            .map(|row| SineScale {
+                wavelength: row.wavelength_mm / 1e3,
+                amplitude: row.amplitude_mm / 1e3,
+            })
+            .collect();
+        if scales.iter().all(|scale| scale.amplitude == 0.0) {
+            return Err(StageError::NoWaves { waves });
+        }
+        for realisation in 1..=parameters.realisations {
+            let surface = random_phases(&scales, parameters.seed, u64::from(realisation));
+            rows.extend((1..).zip(surface).map(|(scale, wave)| SurfaceRow {
+                waves,
+                realisation,
+                scale,
+                wavelength_m: wave.wavelength,
+                amplitude_m: wave.amplitude,
+                phase_rad: wave.phase,
+            }));
+        }
+    }
+    context.pending.write_table(SURFACES_FILE, &rows, &Metadata::new())?;
+    Ok(Vec::new())
+}
+
+/// A realised surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Number of waves of the approximation, its name.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Its waves, by ascending wavelength.
+    pub profile: Vec<Wave>,
+}
+
+/// Reads the surfaces of a run.
+///
+/// # Errors
+/// Those of the store.
+pub fn read_surfaces(run: &RunView) -> Result<Vec<Surface>, StageError> {
+    let (rows, _) = run.read_table::<SurfaceRow>("realise", SURFACES_FILE)?;
+    let same =
+        |a: &SurfaceRow, b: &SurfaceRow| (a.waves, a.realisation) == (b.waves, b.realisation);
+    let surface = |rows: &[SurfaceRow]| Surface {
+        waves: rows[0].waves,
+        realisation: rows[0].realisation,
+        profile: rows
+            .iter()
+            .map(|row| Wave {
+                wavelength: row.wavelength_m,
+                amplitude: row.amplitude_m,
+                phase: row.phase_rad,
+            })
+            .collect(),
+    };
+    Ok(rows.chunk_by(same).map(surface).collect())
+}

@@ -1,0 +1,139 @@
+//! tables: friction over contact area, averaged over the realisations.
+
+use super::bem::{CURVES_FILE, CurveRow};
+use super::{Context, StageError, schema_of};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use crate::numerics::statistics::MeanEstimate;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[tables]` of a recipe; it has no keys yet.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tables {}
+
+/// The averaged friction: `friction.arrow`.
+pub const FRICTION_FILE: &str = "friction.arrow";
+
+/// Friction at one contact area: each realisation and their average.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FrictionRow {
+    /// Contact model: `bem`, the viscoelastic half-space.
+    pub model: String,
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Contact area fraction.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Friction coefficient of each realisation, in their order.
+    #[schemars(extend("unit" = "1"))]
+    pub realisations: Vec<f64>,
+    /// Mean over the realisations.
+    #[schemars(extend("unit" = "1"))]
+    pub mean: f64,
+    /// Standard deviation over the realisations; absent for fewer than two.
+    #[schemars(extend("unit" = "1"))]
+    pub standard_deviation: Option<f64>,
+    /// Half width of the 95 % confidence interval of the mean, Student's t; absent for fewer than
+    /// two.
+    #[schemars(extend("unit" = "1"))]
+    pub confidence_95: Option<f64>,
+    /// Largest estimated error of a realisation by interpolation.
+    #[schemars(extend("unit" = "1"))]
+    pub interpolation_error: f64,
+    /// Mean pressure averaged over the realisations.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+}
+
+impl Row for FrictionRow {
+    const SCHEMA: &'static str = "asperity.tables.friction";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![schema_of::<FrictionRow>()]
+}
+
+/// Averages the curves and writes the table; returns warnings.
+///
+/// # Errors
+/// Those of the store.
+pub fn run(run: &RunView, context: &mut Context) -> Result<Vec<String>, StageError> {
+    let (curves, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
+    context.pending.write_table(FRICTION_FILE, &average(curves), &Metadata::new())?;
+    Ok(Vec::new())
+}
+
+/// One row for each number of waves, speed and area, ascending.
+fn average(mut curves: Vec<CurveRow>) -> Vec<FrictionRow> {
+    let order = |a: &CurveRow, b: &CurveRow| {
+        a.waves
+            .cmp(&b.waves)
+            .then(a.speed_mm_s.total_cmp(&b.speed_mm_s))
+            .then(a.contact_area_fraction.total_cmp(&b.contact_area_fraction))
+    };
+    curves.sort_by(|a, b| order(a, b).then(a.realisation.cmp(&b.realisation)));
+    curves.chunk_by(|a, b| order(a, b).is_eq()).map(row).collect()
+}
+
+fn row(curves: &[CurveRow]) -> FrictionRow {
+    let realisations: Vec<f64> = curves.iter().map(|c| c.friction_coefficient).collect();
+    let estimate = MeanEstimate::of(&realisations);
+    let present = |value: f64| value.is_finite().then_some(value);
+    let first = &curves[0];
+    FrictionRow {
+        model: "bem".into(),
+        waves: first.waves,
+        speed_mm_s: first.speed_mm_s,
+        contact_area_fraction: first.contact_area_fraction,
+        realisations,
+        mean: estimate.mean,
+        standard_deviation: present(estimate.standard_deviation),
+        confidence_95: present(estimate.confidence_95),
+        interpolation_error: curves.iter().map(|c| c.interpolation_error).fold(0.0, f64::max),
+        pressure_mpa: curves.iter().map(|c| c.pressure_mpa).sum::<f64>() / curves.len() as f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> CurveRow {
+        CurveRow {
+            waves,
+            realisation,
+            speed_mm_s: 10.0,
+            contact_area_fraction: area,
+            pressure_mpa: friction,
+            friction_coefficient: friction,
+            interpolation_error: friction / 1e3,
+        }
+    }
+
+    #[test]
+    fn rows_are_averaged_over_realisations_whatever_their_order() {
+        let rows = average(vec![
+            curve(9, 1, 0.1, 7.0),
+            curve(8, 2, 0.1, 3.0),
+            curve(8, 1, 0.05, 1.5),
+            curve(8, 1, 0.1, 1.0),
+            curve(8, 2, 0.05, 2.5),
+        ]);
+        assert_eq!(rows.len(), 3);
+        assert_eq!(rows[0].realisations, [1.5, 2.5]);
+        assert_eq!((rows[1].mean, rows[1].interpolation_error), (2.0, 3e-3));
+        // t(0.975, 1) = 12.7062 in every table.
+        let expected = 12.7062 * 2.0_f64.sqrt() / 2.0_f64.sqrt();
+        approx::assert_relative_eq!(rows[1].confidence_95.unwrap(), expected, max_relative = 1e-5);
+        assert_eq!((rows[2].waves, rows[2].confidence_95), (9, None));
+    }
+}
