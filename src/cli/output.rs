@@ -102,7 +102,9 @@ fn write_by_rename(
         .prefix(".tmp-")
         // The usual permissions less the umask: results are for colleagues too.
         .permissions(Permissions::from_mode(0o666))
-        .tempfile_in(folder)?;
+        .tempfile_in(folder)
+        // The full message would speak of the temporary name.
+        .map_err(|error| io::Error::from(error.kind()))?;
     buffered(file.as_file_mut(), write)?;
     let persisted = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
     persisted.map(drop).map_err(|error| error.error)

@@ -44,7 +44,7 @@ pub(super) struct Synth {
 #[derive(Debug, Args)]
 struct SpecimenOptions {
     /// Number of scans.
-    #[arg(long, value_name = "N", default_value = "30")]
+    #[arg(long, value_name = "N", default_value = "30", value_parser = values::count::<usize>)]
     scans: usize,
     /// Length of a scan in mm.
     #[arg(long, value_name = "MM", default_value = "16", value_parser = values::finite)]
@@ -93,7 +93,7 @@ struct SpecimenOptions {
     #[arg(long, value_name = "UM", default_value = "40", value_parser = values::finite)]
     missing_run_length_um: f64,
     /// Seed of the random numbers.
-    #[arg(long, value_name = "N", default_value = "35")]
+    #[arg(long, value_name = "N", default_value = "35", value_parser = values::count::<u64>)]
     seed: u64,
 }
 
@@ -168,7 +168,8 @@ impl Synth {
         print(&if quiet {
             String::new()
         } else {
-            lines.collect::<String>() + &format!("{} scans of {points} points each\n", scans.len())
+            lines.collect::<String>()
+                + &format!("{points} points in each of {} files\n", scans.len())
         })
     }
 }

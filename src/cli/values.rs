@@ -1,5 +1,7 @@
 //! Parsers of single option values.
 
+use std::str::FromStr;
+
 use serde::de::{DeserializeOwned, value::Error};
 use serde::de::{IntoDeserializer, value::StrDeserializer};
 
@@ -23,6 +25,16 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 => Ok(value),
         value => Err(format!("{value} is not positive")),
+    }
+}
+
+/// A whole number that is not negative.
+pub(super) fn count<T: FromStr>(text: &str) -> Result<T, String> {
+    let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    match text.parse() {
+        Ok(value) if digits => Ok(value),
+        _ if digits => Err(format!("{text} is too large")),
+        _ => Err(format!("`{text}` is no whole number of 0 or more")),
     }
 }
 

@@ -50,7 +50,7 @@ pub(super) struct ScanOptions {
     #[arg(long, value_name = "CHARACTER")]
     comment: Option<char>,
     /// Number of lines to skip at the start.
-    #[arg(long, value_name = "N", default_value = "0")]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = values::count::<usize>)]
     skip_lines: usize,
     /// Skip all lines up to and with the first that starts with this text.
     #[arg(long, value_name = "TEXT")]

@@ -17,6 +17,10 @@ use crate::rubber::{Rubber, read_rubber};
 /// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
 const AREA_TOLERANCE: f64 = 1e-6;
 
+/// Points on a contact spot below which area and friction are those of the grid: of one sine they
+/// are then off by a fifth and more.
+const RESOLVED_SPOT: f64 = 4.0;
+
 const EXAMPLES: &str = "\
 Examples:
   One sine of wavelength 0.0625 mm and amplitude 0.01867 mm, the rubber of Table 2.1:
@@ -110,6 +114,11 @@ impl Bem {
         let start = Instant::now();
         let speed = self.speed / 1e3;
         let mut contact = SlidingContact::new(&rubber, speed, shape.period, &shape.heights)?;
+        if self.area.is_some() && contact.height_range() == 0.0 {
+            return Err(CliError::input(
+                "the profile is flat and touches everywhere at any pressure: give --pressure",
+            ));
+        }
         let solution = match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => contact.solve(pressure_mpa * 1e6)?,
             (None, Some(fraction)) => solve_for_area(&mut contact, fraction, AREA_TOLERANCE)?,
@@ -117,6 +126,17 @@ impl Bem {
         };
         let summary = Summary::new(&solution, start.elapsed().as_secs_f64());
         summary.check()?;
+        let spot = points_per_spot(&solution.pressure);
+        if spot < RESOLVED_SPOT {
+            note(
+                quiet,
+                format_args!(
+                    "warning: a contact spot is {} grid points wide on average, too few for reliable figures: give \
+                     more points or more pressure",
+                    significant(spot)
+                ),
+            );
+        }
         if let Some(path) = &self.fields {
             write_file(path, true, |out| write_fields(out, &shape, &solution))?;
         }
@@ -183,6 +203,14 @@ impl Summary {
             ("time", significant(self.seconds) + " s"),
         ])
     }
+}
+
+/// Mean number of neighbouring grid points in contact; infinite in full contact.
+fn points_per_spot(pressure: &[f64]) -> f64 {
+    let touches = |index: usize| pressure[index % pressure.len()] > 0.0;
+    let touching = (0..pressure.len()).filter(|index| touches(*index)).count();
+    let ends = (0..pressure.len()).filter(|index| touches(*index) && !touches(index + 1)).count();
+    touching as f64 / ends as f64
 }
 
 fn write_fields(

@@ -39,11 +39,11 @@ pub(super) struct ShapeOptions {
     #[arg(long, value_name = "FILE", requires = "profile_unit")]
     pub(super) profile: Option<PathBuf>,
     /// Unit of x and z in --profile: nm, um, mm or m; never guessed.
-    #[arg(long, value_name = "UNIT", requires = "profile", value_parser = values::length_unit)]
+    #[arg(long, value_name = "UNIT", requires = "profile", conflicts_with = "waves", value_parser = values::length_unit)]
     profile_unit: Option<LengthUnit>,
     /// Grid points over the period, 8 to 16777216 [default: the points of --profile; else the power of two
     /// with 64 or more on the shortest wave, at least 1024].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     points: Option<usize>,
 }
 
