@@ -7,6 +7,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`artifact`] | tables (Arrow), arrays (HDF5), manifests, digests and the folder of a run |
+//! | [`cli`] | arguments, printing, exit codes |
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
 //! | [`scans`] | readers of instrument files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
@@ -18,6 +19,7 @@
 //! are NaN and nothing else is.
 
 pub mod artifact;
+pub mod cli;
 pub mod contact;
 pub mod numerics;
 pub mod pipeline;

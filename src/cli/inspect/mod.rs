@@ -1,0 +1,160 @@
+//! `asperity inspect`: what is in a file or folder.
+
+mod artifact;
+mod folder;
+mod provenance;
+mod scan;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::CliError;
+use super::output::{json, print};
+use artifact::{Arrays, Table};
+use folder::{ManifestFile, Run, Stage};
+use scan::{Scan, ScanOptions};
+
+const EXAMPLES: &str = "\
+Examples:
+  A table, arrays, a manifest, the folder of a stage or of a whole run:
+    asperity inspect runs/asphalt/bem/solves.arrow
+    asperity inspect runs/asphalt
+  A text scan; its units are never guessed:
+    asperity inspect data/scans/specimen/scan_01.txt --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um";
+
+/// Show what a file or folder holds: schema, units, shape, provenance, first rows.
+///
+/// PATH is an Arrow table, an HDF5 file of arrays, a manifest, the folder of a stage or of a run, or
+/// a text scan. The kind is found by looking into it; the name does not matter.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Inspect {
+    /// File or folder.
+    path: PathBuf,
+    /// Print JSON instead of text.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    scan: ScanOptions,
+}
+
+/// What a path turned out to be.
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+enum Finding {
+    Table(Table),
+    Arrays(Arrays),
+    Manifest(ManifestFile),
+    Stage(Stage),
+    Run(Run),
+    Scan(Scan),
+}
+
+impl Inspect {
+    pub(super) fn run(&self) -> Result<(), CliError> {
+        let finding = self.find()?;
+        print(&if self.json { json(&finding)? } else { finding.text() })
+    }
+
+    fn find(&self) -> Result<Finding, CliError> {
+        let path = &self.path;
+        if path.is_dir() {
+            return folder::read(path);
+        }
+        let start = first_bytes(path)
+            .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
+        Ok(match Format::of(&start) {
+            Format::Arrow => Finding::Table(Table::read(path)?),
+            Format::Hdf5 => Finding::Arrays(Arrays::read(path)?),
+            Format::Json => Finding::Manifest(ManifestFile::read(path)?),
+            Format::Text => Finding::Scan(self.scan.read(path, &start)?),
+            Format::Empty => return Err(foreign(path, "is empty")),
+            Format::Binary => {
+                return Err(foreign(
+                    path,
+                    "is none of Arrow table, HDF5 file, manifest and text; convert it to text first if it is a scan",
+                ));
+            }
+        })
+    }
+}
+
+impl Finding {
+    fn text(&self) -> String {
+        match self {
+            Self::Table(table) => table.text(),
+            Self::Arrays(arrays) => arrays.text(),
+            Self::Manifest(manifest) => manifest.text(),
+            Self::Stage(stage) => stage.text(),
+            Self::Run(run) => run.text(),
+            Self::Scan(scan) => scan.text(),
+        }
+    }
+}
+
+fn foreign(path: &Path, problem: &str) -> CliError {
+    CliError::input(format!("{} {problem}", path.display()))
+}
+
+/// Format of a file by its content.
+#[derive(Debug, PartialEq)]
+enum Format {
+    Arrow,
+    Hdf5,
+    Json,
+    Text,
+    Binary,
+    Empty,
+}
+
+impl Format {
+    fn of(start: &[u8]) -> Self {
+        const UTF_16_MARKS: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
+        if start.starts_with(b"ARROW1") {
+            Self::Arrow
+        } else if start.starts_with(b"\x89HDF\r\n\x1a\n") {
+            Self::Hdf5
+        } else if start.is_empty() {
+            Self::Empty
+        } else if start.trim_ascii_start().starts_with(b"{") {
+            Self::Json
+        } else if start.contains(&0) && !UTF_16_MARKS.iter().any(|mark| start.starts_with(mark)) {
+            Self::Binary
+        } else {
+            Self::Text
+        }
+    }
+}
+
+fn first_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+    const ENOUGH: u64 = 4096;
+    let mut bytes = Vec::new();
+    File::open(path)?.take(ENOUGH).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_are_told_by_content() {
+        let cases: [(&[u8], Format); 8] = [
+            (b"ARROW1\0\0", Format::Arrow),
+            (b"\x89HDF\r\n\x1a\n\0", Format::Hdf5),
+            (b"\n {\"schema\": 1}", Format::Json),
+            (b"# x z\n0 1\n", Format::Text),
+            (b"x_\xb5m;z_\xb5m\n", Format::Text),
+            (b"\xff\xfe1\0;\0", Format::Text),
+            (b"PK\x03\x04\x14\0\0", Format::Binary),
+            (b"", Format::Empty),
+        ];
+        for (bytes, format) in cases {
+            assert_eq!(Format::of(bytes), format, "{bytes:?}");
+        }
+    }
+}

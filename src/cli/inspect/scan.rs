@@ -1,0 +1,211 @@
+//! Text scans, described by options.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+use statrs::statistics::{Data, OrderStatistics};
+
+use super::foreign;
+use crate::cli::output::{aligned, significant};
+use crate::cli::{CliError, values};
+use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use crate::scans::{TextFormat, read_text};
+use crate::surface::RawScan;
+
+const FIRST_POINTS: usize = 5;
+
+/// How a text scan is to be read; the keys `[ingest.format]` of a recipe as options.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Text scans")]
+pub(super) struct ScanOptions {
+    /// Between the cells: tab, comma, semicolon, whitespace or one character.
+    #[arg(long, value_parser = values::separator)]
+    separator: Option<Separator>,
+    /// Column of the positions, by name or number (the first is 1).
+    #[arg(long, value_name = "COLUMN", value_parser = values::column)]
+    x_column: Option<Column>,
+    /// Unit of the positions: nm, um, mm or m.
+    #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
+    x_unit: Option<LengthUnit>,
+    /// Distance of neighbouring points in um, for a file of heights only, in place of --x-column.
+    #[arg(long, value_name = "UM", value_parser = values::positive)]
+    x_spacing_um: Option<f64>,
+    /// Column of the heights, by name or number (the first is 1).
+    #[arg(long, value_name = "COLUMN", value_parser = values::column)]
+    z_column: Option<Column>,
+    /// Unit of the heights: nm, um, mm or m.
+    #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
+    z_unit: Option<LengthUnit>,
+    /// The file holds depths, which grow away from the rubber.
+    #[arg(long)]
+    invert_z: bool,
+    /// No line of column names stands before the first point.
+    #[arg(long)]
+    no_header: bool,
+    /// Decimal mark, `.` or `,`.
+    #[arg(long, value_name = "MARK", default_value = ".", value_parser = values::decimal_mark)]
+    decimal_mark: DecimalMark,
+    /// Character that starts a comment line, such as '#'.
+    #[arg(long, value_name = "CHARACTER")]
+    comment: Option<char>,
+    /// Number of lines to skip at the start.
+    #[arg(long, value_name = "N", default_value = "0", value_parser = values::count::<usize>)]
+    skip_lines: usize,
+    /// Skip all lines up to and with the first that starts with this text.
+    #[arg(long, value_name = "TEXT")]
+    skip_until: Option<String>,
+    /// A cell that marks a missing height, such as -25400; repeat it for more. Replaces the default:
+    /// empty cells, NaN and BAD.
+    #[arg(long, value_name = "TEXT", default_values = ["", "NaN", "BAD"], allow_hyphen_values = true)]
+    missing: Vec<String>,
+    /// Encoding of the text, such as utf-8, windows-1252 or utf-16le.
+    #[arg(long, value_name = "LABEL", default_value = "utf-8")]
+    encoding: String,
+    /// Length in mm to leave out at the start of the track.
+    #[arg(long, value_name = "MM", default_value = "0", value_parser = values::finite)]
+    cut_start_mm: f64,
+    /// Length in mm to leave out at the end of the track.
+    #[arg(long, value_name = "MM", default_value = "0", value_parser = values::finite)]
+    cut_end_mm: f64,
+}
+
+impl ScanOptions {
+    /// Reads the text file at `path`, which begins with `start`.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(super) fn read(&self, path: &Path, start: &[u8]) -> Result<Scan, CliError> {
+        let format = self.format().map_err(|needed| {
+            let lines: String = String::from_utf8_lossy(start)
+                .lines()
+                .take(FIRST_POINTS)
+                .map(|line| format!("\n  | {}", line.chars().take(100).collect::<String>()))
+                .collect();
+            let problem = format!(
+                "is no artifact but text; to read it as a scan, give {needed} as well (units are never \
+                 guessed). It begins with{lines}"
+            );
+            foreign(path, &problem)
+        })?;
+        let scan = read_text(path, &format).map_err(CliError::input)?;
+        Ok(Scan::of(path, scan))
+    }
+
+    /// # Errors
+    /// The options that are needed and not given.
+    fn format(&self) -> Result<TextFormat, String> {
+        let spaced = self.x_spacing_um.is_some();
+        let needed: Vec<&str> = [
+            ("--separator", self.separator.is_none()),
+            ("--x-column (or --x-spacing-um)", self.x_column.is_none() && !spaced),
+            ("--x-unit", self.x_unit.is_none() && !spaced),
+            ("--z-column", self.z_column.is_none()),
+            ("--z-unit", self.z_unit.is_none()),
+        ]
+        .into_iter()
+        .filter_map(|(option, absent)| absent.then_some(option))
+        .collect();
+        let (Some(separator), Some(z_column), true) =
+            (self.separator, self.z_column.clone(), needed.is_empty())
+        else {
+            return Err(needed.join(", "));
+        };
+        Ok(TextFormat {
+            separator,
+            decimal_mark: self.decimal_mark,
+            comment: self.comment,
+            skip_lines: self.skip_lines,
+            skip_until: self.skip_until.clone(),
+            header: !self.no_header,
+            x_column: self.x_column.clone(),
+            x_spacing_um: self.x_spacing_um,
+            x_unit: self.x_unit,
+            z_column,
+            z_unit: self.z_unit,
+            invert_z: self.invert_z,
+            missing: self.missing.clone(),
+            encoding: self.encoding.clone(),
+            cut_start_mm: self.cut_start_mm,
+            cut_end_mm: self.cut_end_mm,
+        })
+    }
+}
+
+/// A raw scan, summarised.
+#[derive(Debug, Serialize)]
+pub(super) struct Scan {
+    path: PathBuf,
+    points: usize,
+    missing: usize,
+    start_mm: f64,
+    end_mm: f64,
+    median_spacing_um: f64,
+    smallest_spacing_um: f64,
+    largest_spacing_um: f64,
+    lowest_um: f64,
+    highest_um: f64,
+    mean_um: f64,
+    /// Root of the mean square about the mean, before form and tilt are removed.
+    rms_um: f64,
+    /// x in mm and z in um; absent where missing.
+    first_points: Vec<(f64, Option<f64>)>,
+}
+
+impl Scan {
+    /// The readers give two points or more and at least one height.
+    fn of(path: &Path, scan: RawScan) -> Self {
+        let RawScan { positions, heights, .. } = scan;
+        let steps: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]) * 1e6).collect();
+        let present: Vec<f64> =
+            heights.iter().filter(|height| !height.is_nan()).map(|height| height * 1e6).collect();
+        let mean =
+            |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / present.len() as f64;
+        let mean_um = mean(&mut present.iter().copied());
+        let lowest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let point = |(x, z): (&f64, &f64)| (x * 1e3, (!z.is_nan()).then_some(z * 1e6));
+        Self {
+            path: path.to_path_buf(),
+            points: heights.len(),
+            missing: heights.len() - present.len(),
+            start_mm: lowest(&positions) * 1e3,
+            end_mm: highest(&positions) * 1e3,
+            smallest_spacing_um: lowest(&steps),
+            largest_spacing_um: highest(&steps),
+            median_spacing_um: Data::new(steps).median(),
+            lowest_um: lowest(&present),
+            highest_um: highest(&present),
+            mean_um,
+            rms_um: mean(&mut present.iter().map(|z| (z - mean_um).powi(2))).sqrt(),
+            first_points: positions.iter().zip(&heights).take(FIRST_POINTS).map(point).collect(),
+        }
+    }
+
+    pub(super) fn text(&self) -> String {
+        let range = |from: f64, to: f64| format!("{} to {}", significant(from), significant(to));
+        let share = 100.0 * self.missing as f64 / self.points as f64;
+        let lines = aligned(&[
+            ("scan", self.path.display().to_string()),
+            ("shape", format!("{} points, {} missing ({share:.1} %)", self.points, self.missing)),
+            ("x", range(self.start_mm, self.end_mm) + " mm"),
+            (
+                "spacing",
+                format!(
+                    "median {} um, {} um",
+                    significant(self.median_spacing_um),
+                    range(self.smallest_spacing_um, self.largest_spacing_um)
+                ),
+            ),
+            ("z", range(self.lowest_um, self.highest_um) + " um"),
+            ("mean of z", significant(self.mean_um) + " um"),
+            ("rms of z", significant(self.rms_um) + " um about the mean, form not removed"),
+        ]);
+        let point = |(x, z): &(f64, Option<f64>)| {
+            let z = z.map_or("missing".into(), significant);
+            format!("{:>12}  {z:>12}\n", significant(*x))
+        };
+        let points: String = self.first_points.iter().map(point).collect();
+        format!("{lines}\nfirst points\n{:>12}  {:>12}\n{points}", "x in mm", "z in um")
+    }
+}

@@ -1,0 +1,77 @@
+//! The command line: arguments, printing, exit codes.
+//!
+//! Results go to standard output, everything else to standard error. Exit code 0 is success, 1 a
+//! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
+
+mod error;
+mod inspect;
+mod interrupt;
+mod output;
+mod solve;
+mod synth;
+mod values;
+
+pub use error::CliError;
+
+use clap::{Parser, Subcommand};
+
+/// Hysteretic rubber friction on asphalt: profilometer scans in, friction tables with error bars
+/// out.
+#[derive(Debug, Parser)]
+#[command(name = "asperity", version, arg_required_else_help = true)]
+pub struct Arguments {
+    /// Print results and errors only: no warnings, no notes.
+    #[arg(long, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Solve a single contact problem, without any recipe.
+    #[command(subcommand)]
+    Solve(solve::Solve),
+    Synth(synth::Synth),
+    Inspect(inspect::Inspect),
+}
+
+impl Arguments {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`], whose exit code tells bad input from a failed computation.
+    pub fn run(self) -> Result<(), CliError> {
+        match self.command {
+            Command::Solve(command) => command.run(self.quiet),
+            Command::Synth(command) => command.run(self.quiet),
+            Command::Inspect(command) => command.run(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_of_the_arguments_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    /// Where help lacks an example, a user has to guess the units.
+    #[test]
+    fn every_command_has_examples() {
+        fn check(command: &clap::Command) {
+            if command.has_subcommands() {
+                command.get_subcommands().for_each(check);
+            } else {
+                let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+                let example = format!(" {} ", command.get_name());
+                assert!(help.contains("Examples:") && help.contains(&example), "{example}");
+            }
+        }
+        check(&Arguments::command());
+    }
+}

@@ -1,0 +1,159 @@
+//! Standard output and files.
+
+use std::fmt::Display;
+use std::fs::{self, File, Permissions};
+use std::io::{self, BufWriter, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+
+use super::CliError;
+
+/// Prints a result to standard output. A reader that has seen enough, such as `head`, is no error.
+///
+/// # Errors
+/// [`CliError::Failure`] if standard output cannot be written.
+pub(super) fn print(text: &str) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(CliError::failure(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Tells something on standard error that is no result.
+pub(super) fn note(quiet: bool, text: impl Display) {
+    if !quiet {
+        // A closed standard error must not end a computation.
+        let _ = writeln!(io::stderr(), "{text}");
+    }
+}
+
+/// A value as pretty JSON with a line end.
+///
+/// # Errors
+/// [`CliError::Failure`] if it has no JSON form.
+pub(super) fn json(value: &impl serde::Serialize) -> Result<String, CliError> {
+    let text = serde_json::to_string_pretty(value).map_err(CliError::failure)?;
+    Ok(text + "\n")
+}
+
+/// Lines of a name and a value, the values aligned.
+pub(super) fn aligned(lines: &[(&str, String)]) -> String {
+    let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    lines.iter().map(|(name, value)| format!("{name:<width$}  {value}\n")).collect()
+}
+
+/// A number with six significant digits, in exponential form where the plain one would be long.
+pub(super) fn significant(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || !value.is_finite() {
+        format!("{value}")
+    } else if (1e-4..1e6).contains(&magnitude) {
+        // Rounding to a power of ten adds a digit, as in 0.99999999 -> 1.000000.
+        let decimals = 5 - magnitude.log10().floor() as i32;
+        format!("{value:.*}", decimals.max(0) as usize)
+    } else {
+        format!("{value:.5e}")
+    }
+}
+
+/// Writes a file under a temporary name and renames it, so that it is there completely or not at
+/// all. What is no plain file (`/dev/stdout`, a link) is written as it stands.
+///
+/// # Errors
+/// [`CliError::Failure`] that names the file; a file that exists and must not be overwritten is
+/// [`CliError::Input`].
+pub(super) fn write_file(
+    path: &Path,
+    overwrite: bool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), CliError> {
+    let failed = |error: io::Error| match error.kind() {
+        io::ErrorKind::AlreadyExists => already_exists(path),
+        _ => CliError::failure(format!("cannot write {}: {error}", path.display())),
+    };
+    match fs::symlink_metadata(path) {
+        Ok(_) if !overwrite => Err(already_exists(path)),
+        Ok(metadata) if !metadata.is_file() => {
+            File::create(path).and_then(|file| buffered(file, write)).map_err(failed)
+        }
+        _ => write_by_rename(path, overwrite, write).map_err(failed),
+    }
+}
+
+/// The refusal to overwrite a file.
+pub(super) fn already_exists(path: &Path) -> CliError {
+    let path = path.display();
+    CliError::input(format!("{path} exists already: choose another place, or give --force"))
+}
+
+fn write_by_rename(
+    path: &Path,
+    overwrite: bool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let mut file = tempfile::Builder::new()
+        .prefix(".tmp-")
+        // The usual permissions less the umask: results are for colleagues too.
+        .permissions(Permissions::from_mode(0o666))
+        .tempfile_in(folder)
+        // The full message would speak of the temporary name.
+        .map_err(|error| io::Error::from(error.kind()))?;
+    buffered(file.as_file_mut(), write)?;
+    let persisted = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
+    persisted.map(drop).map_err(|error| error.error)
+}
+
+fn buffered(
+    file: impl Write,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut file = BufWriter::new(file);
+    write(&mut file)?;
+    file.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_significant_digits() {
+        let cases = [
+            (0.664551234, "0.664551"),
+            (12.3456789, "12.3457"),
+            (123456.789, "123457"),
+            (-0.000123456789, "-0.000123457"),
+            (1.23456789e-12, "1.23457e-12"),
+            (1.23456789e6, "1.23457e6"),
+            (0.0, "0"),
+        ];
+        for (value, expected) in cases {
+            assert_eq!(significant(value), expected);
+        }
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fields.csv");
+        write_file(&path, false, |out| out.write_all(b"old")).unwrap();
+        let error = write_file(&path, true, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::other("no more"))
+        });
+        assert_eq!(error.unwrap_err().exit_code(), 1);
+        let refused = write_file(&path, false, |out| out.write_all(b"new")).unwrap_err();
+        assert_eq!(refused.exit_code(), 2);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        write_file(&path, true, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+}

@@ -1,0 +1,233 @@
+//! `asperity solve bem`: the steady sliding contact on the linear viscoelastic half-space.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{ArgGroup, Args};
+use serde::Serialize;
+
+use super::area::solve_for_area;
+use super::shape::{Shape, ShapeOptions};
+use crate::cli::output::{aligned, json, note, print, significant, write_file};
+use crate::cli::{CliError, values};
+use crate::contact::{ContactSolution, SlidingContact};
+use crate::rubber::{Rubber, read_rubber};
+
+/// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
+const AREA_TOLERANCE: f64 = 1e-6;
+
+/// Points on a contact spot below which area and friction are those of the grid: of one sine they
+/// are then off by a fifth and more.
+const RESOLVED_SPOT: f64 = 4.0;
+
+const EXAMPLES: &str = "\
+Examples:
+  One sine of wavelength 0.0625 mm and amplitude 0.01867 mm, the rubber of Table 2.1:
+    asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3
+  Two sines, the second with a phase of 1.57 rad, as JSON:
+    asperity solve bem --wave 0.0625:0.01867 --wave 0.125:0.02648:1.57 --speed 10 --pressure 3.3 --json
+  The pressure that brings 5 % of the area into contact:
+    asperity solve bem --wave 0.0625:0.01867 --speed 10 --area 0.05
+  A measured profile with x and z in micrometres on an elastic half-space:
+    asperity solve bem --profile road.txt --profile-unit um --modulus 4.17 --poisson 0.49 --speed 10 --pressure 0.2
+
+Exit codes: 0 solved, 1 not converged or not written, 2 bad input.";
+
+/// Solve the steady sliding contact of a rubber half-space with a periodic profile.
+///
+/// The profile is a sum of sines (--wave) or a file (--profile). The rubber slides over it at
+/// --speed, pressed on with the mean --pressure, or as strongly as gives the contact --area.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+#[command(group(ArgGroup::new("load").required(true).args(["pressure", "area"])))]
+pub(in crate::cli) struct Bem {
+    #[command(flatten)]
+    shape: ShapeOptions,
+    /// Sliding speed in mm/s.
+    #[arg(long, value_name = "MM_S", value_parser = values::positive, allow_negative_numbers = true)]
+    speed: f64,
+    /// Mean pressure in MPa.
+    #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
+    pressure: Option<f64>,
+    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure.
+    #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
+    area: Option<f64>,
+    #[command(flatten)]
+    material: MaterialOptions,
+    /// Print JSON with full precision instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Also write x, height (about the mean line), pressure and separation at the grid points to
+    /// this CSV file: x_mm, height_mm, pressure_mpa, separation_mm. An existing file is replaced.
+    #[arg(long, value_name = "FILE")]
+    fields: Option<PathBuf>,
+}
+
+/// The rubber.
+#[derive(Debug, Args)]
+struct MaterialOptions {
+    /// Rubber as a TOML file, see data/rubber [default: Table 2.1 of the thesis].
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["modulus", "poisson"])]
+    rubber: Option<PathBuf>,
+    /// Young's modulus in MPa of an elastic half-space in place of a rubber; with --poisson.
+    #[arg(long, value_name = "MPA", requires = "poisson", value_parser = values::positive, allow_negative_numbers = true)]
+    modulus: Option<f64>,
+    /// Poisson ratio of the elastic half-space, 0 to 0.5; with --modulus.
+    #[arg(long, value_name = "NU", requires = "modulus", value_parser = values::finite, allow_negative_numbers = true)]
+    poisson: Option<f64>,
+}
+
+impl MaterialOptions {
+    fn rubber(&self) -> Result<Rubber, CliError> {
+        match (&self.rubber, self.modulus, self.poisson) {
+            (Some(path), _, _) => read_rubber(path).map_err(CliError::input),
+            (None, Some(modulus_mpa), Some(poisson_ratio)) => {
+                Ok(Rubber::elastic(modulus_mpa * 1e6, poisson_ratio))
+            }
+            _ => Ok(Rubber::table_2_1()),
+        }
+    }
+}
+
+/// What is printed; the names are the keys of the JSON object.
+#[derive(Debug, Serialize)]
+struct Summary {
+    friction_coefficient: f64,
+    contact_area_fraction: f64,
+    mean_separation_mm: f64,
+    pressure_mpa: f64,
+    residual: f64,
+    iterations: usize,
+    grid_points: usize,
+    seconds: f64,
+}
+
+impl Bem {
+    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        let rubber = self.material.rubber()?;
+        let shape = self.shape.build()?;
+        if let Some(warning) = &shape.warning {
+            note(quiet, format_args!("warning: {warning}"));
+        }
+        self.refuse_to_overwrite_input()?;
+        let start = Instant::now();
+        let speed = self.speed / 1e3;
+        let mut contact = SlidingContact::new(&rubber, speed, shape.period, &shape.heights)?;
+        if self.area.is_some() && contact.height_range() == 0.0 {
+            return Err(CliError::input(
+                "the profile is flat and touches everywhere at any pressure: give --pressure",
+            ));
+        }
+        let solution = match (self.pressure, self.area) {
+            (Some(pressure_mpa), _) => contact.solve(pressure_mpa * 1e6)?,
+            (None, Some(fraction)) => solve_for_area(&mut contact, fraction, AREA_TOLERANCE)?,
+            (None, None) => return Err(CliError::input("give --pressure or --area")),
+        };
+        let summary = Summary::new(&solution, start.elapsed().as_secs_f64());
+        summary.check()?;
+        let spot = points_per_spot(&solution.pressure);
+        if spot < RESOLVED_SPOT {
+            note(
+                quiet,
+                format_args!(
+                    "warning: a contact spot is {} grid points wide on average, too few for reliable figures: give \
+                     more points or more pressure",
+                    significant(spot)
+                ),
+            );
+        }
+        if let Some(path) = &self.fields {
+            write_file(path, true, |out| write_fields(out, &shape, &solution))?;
+        }
+        print(&if self.json { json(&summary)? } else { summary.table() })
+    }
+
+    fn refuse_to_overwrite_input(&self) -> Result<(), CliError> {
+        let Some(fields) = &self.fields else { return Ok(()) };
+        let same = |input: &Path| match (input.canonicalize(), fields.canonicalize()) {
+            (Ok(input), Ok(fields)) => input == fields,
+            _ => false,
+        };
+        let inputs = [self.shape.profile.as_deref(), self.material.rubber.as_deref()];
+        match inputs.into_iter().flatten().find(|input| same(input)) {
+            Some(input) => Err(CliError::input(format!(
+                "--fields would overwrite the input {}: choose another file",
+                input.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Summary {
+    fn new(solution: &ContactSolution, seconds: f64) -> Self {
+        Self {
+            friction_coefficient: solution.friction_coefficient,
+            contact_area_fraction: solution.contact_area_fraction,
+            mean_separation_mm: solution.mean_separation * 1e3,
+            pressure_mpa: solution.mean_pressure / 1e6,
+            residual: solution.residual,
+            iterations: solution.iterations,
+            grid_points: solution.pressure.len(),
+            seconds,
+        }
+    }
+
+    /// Lengths or moduli far from any road overflow; what is no number is no result.
+    fn check(&self) -> Result<(), CliError> {
+        let results = [
+            self.friction_coefficient,
+            self.contact_area_fraction,
+            self.mean_separation_mm,
+            self.residual,
+        ];
+        if results.iter().all(|value| value.is_finite()) {
+            return Ok(());
+        }
+        Err(CliError::failure(
+            "the result is not finite: lengths, moduli or pressure are too large or too small for \
+             double precision; check their units",
+        ))
+    }
+
+    fn table(&self) -> String {
+        aligned(&[
+            ("friction coefficient", significant(self.friction_coefficient)),
+            ("contact area fraction", significant(self.contact_area_fraction)),
+            ("mean separation", significant(self.mean_separation_mm) + " mm"),
+            ("mean pressure", significant(self.pressure_mpa) + " MPa"),
+            ("residual", significant(self.residual)),
+            ("iterations", self.iterations.to_string()),
+            ("grid points", self.grid_points.to_string()),
+            ("time", significant(self.seconds) + " s"),
+        ])
+    }
+}
+
+/// Mean number of neighbouring grid points in contact; infinite in full contact.
+fn points_per_spot(pressure: &[f64]) -> f64 {
+    let touches = |index: usize| pressure[index % pressure.len()] > 0.0;
+    let touching = (0..pressure.len()).filter(|index| touches(*index)).count();
+    let ends = (0..pressure.len()).filter(|index| touches(*index) && !touches(index + 1)).count();
+    touching as f64 / ends as f64
+}
+
+fn write_fields(
+    out: &mut dyn Write,
+    shape: &Shape,
+    solution: &ContactSolution,
+) -> std::io::Result<()> {
+    let points = shape.heights.len();
+    let mean = shape.heights.iter().sum::<f64>() / points as f64;
+    let spacing_mm = shape.period * 1e3 / points as f64;
+    writeln!(out, "x_mm,height_mm,pressure_mpa,separation_mm")?;
+    for (i, height) in shape.heights.iter().enumerate() {
+        let x_mm = i as f64 * spacing_mm;
+        let height_mm = (height - mean) * 1e3;
+        let pressure_mpa = solution.pressure[i] / 1e6;
+        let separation_mm = solution.separation[i] * 1e3;
+        writeln!(out, "{x_mm},{height_mm:e},{pressure_mpa:e},{separation_mm:e}")?;
+    }
+    Ok(())
+}

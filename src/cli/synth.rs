@@ -1,0 +1,204 @@
+//! `asperity synth`: synthetic scans of asphalt.
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::interrupt::Interrupt;
+use super::output::{already_exists, note, print, write_file};
+use super::{CliError, values};
+use crate::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
+
+/// All scans are held in memory, 16 bytes a point.
+const MAX_TOTAL_POINTS: f64 = (1_u64 << 28) as f64;
+
+const EXAMPLES: &str = "\
+Examples:
+  The bundled specimen, bit for bit:
+    asperity synth --out data/scans/specimen --force
+  Five scans of 100 mm of a smoother road with one self-affine regime:
+    asperity synth --out smooth --scans 5 --length-mm 100 --spacing-um 10 --no-outer-regime --perpendicular-correlation-length-mm 0.3 --seed 7
+  A look at what came out:
+    asperity inspect smooth/scan_01.txt --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um";
+
+/// Write synthetic line scans of asphalt, as a profilometer would give them.
+///
+/// One text file per scan, scan_01.txt, scan_02.txt, ... with the columns x_mm and z_um separated by
+/// semicolons; a missing point is BAD. The same options give the same files.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+pub(super) struct Synth {
+    /// Folder for the scans; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Overwrite scans that are there already.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    specimen: SpecimenOptions,
+}
+
+/// The parameters of [`SyntheticAsphalt`]; a test compares the defaults with the bundled specimen.
+#[derive(Debug, Args)]
+struct SpecimenOptions {
+    /// Number of scans.
+    #[arg(long, value_name = "N", default_value = "30", value_parser = values::count::<usize>)]
+    scans: usize,
+    /// Length of a scan in mm.
+    #[arg(long, value_name = "MM", default_value = "16", value_parser = values::finite)]
+    length_mm: f64,
+    /// Distance between raw points in um.
+    #[arg(long, value_name = "UM", default_value = "2", value_parser = values::finite)]
+    spacing_um: f64,
+    /// Hurst exponent of the self-affine regime, the inner one if there are two, between 0 and 1.
+    #[arg(long, value_name = "H", default_value = "0.65", value_parser = values::finite)]
+    hurst_exponent: f64,
+    /// Hurst exponent of the outer regime, between 0 and 1.
+    #[arg(long, value_name = "H", default_value = "0.5", value_parser = values::finite)]
+    outer_hurst_exponent: f64,
+    /// Lag in mm where inner and outer regime meet, below the parallel correlation length.
+    #[arg(long, value_name = "MM", default_value = "0.6", value_parser = values::finite)]
+    crossover_lag_mm: f64,
+    /// One self-affine regime only.
+    #[arg(long, conflicts_with_all = ["outer_hurst_exponent", "crossover_lag_mm"])]
+    no_outer_regime: bool,
+    /// Correlation length along the track in mm, where the power law meets the plateau.
+    #[arg(long, value_name = "MM", default_value = "3.5", value_parser = values::finite)]
+    parallel_correlation_length_mm: f64,
+    /// Correlation length across the surface in mm: the root of the plateau of the height-difference
+    /// correlation, sqrt(2) Rq.
+    #[arg(long, value_name = "MM", default_value = "0.883", value_parser = values::finite)]
+    perpendicular_correlation_length_mm: f64,
+    /// Sharpness of the bend from power law to plateau, from 1 (gradual) to 32 (a corner).
+    #[arg(long, value_name = "P", default_value = "4", value_parser = values::finite)]
+    plateau_sharpness: f64,
+    /// Skewness, -4 to 4; negative for few deep valleys below a flattened top.
+    #[arg(long, value_name = "RSK", default_value = "-1", value_parser = values::finite)]
+    skewness: f64,
+    /// 1/e^2 diameter in um of the spot over which the instrument averages; 0 for a point.
+    #[arg(long, value_name = "UM", default_value = "10", value_parser = values::finite)]
+    spot_diameter_um: f64,
+    /// Standard deviation of the slope (m/m) of the plane on which a specimen lies.
+    #[arg(long, value_name = "SLOPE", default_value = "0.02", value_parser = values::finite)]
+    tilt: f64,
+    /// Standard deviation in um of the noise of a raw point.
+    #[arg(long, value_name = "UM", default_value = "1", value_parser = values::finite)]
+    noise_um: f64,
+    /// Share of the raw points that are missing, 0 to 0.5.
+    #[arg(long, value_name = "FRACTION", default_value = "0.03", value_parser = values::finite)]
+    missing_fraction: f64,
+    /// Mean length in um of a run of missing points.
+    #[arg(long, value_name = "UM", default_value = "40", value_parser = values::finite)]
+    missing_run_length_um: f64,
+    /// Seed of the random numbers.
+    #[arg(long, value_name = "N", default_value = "35", value_parser = values::count::<u64>)]
+    seed: u64,
+}
+
+impl SpecimenOptions {
+    fn parameters(&self) -> SyntheticAsphalt {
+        let outer_regime = OuterRegime {
+            hurst_exponent: self.outer_hurst_exponent,
+            crossover_lag: self.crossover_lag_mm / 1e3,
+        };
+        SyntheticAsphalt {
+            scans: self.scans,
+            length: self.length_mm / 1e3,
+            spacing: self.spacing_um / 1e6,
+            hurst_exponent: self.hurst_exponent,
+            outer_regime: (!self.no_outer_regime).then_some(outer_regime),
+            parallel_correlation_length: self.parallel_correlation_length_mm / 1e3,
+            perpendicular_correlation_length: self.perpendicular_correlation_length_mm / 1e3,
+            plateau_sharpness: self.plateau_sharpness,
+            skewness: self.skewness,
+            spot_diameter: self.spot_diameter_um / 1e6,
+            tilt: self.tilt,
+            noise: self.noise_um / 1e6,
+            missing_fraction: self.missing_fraction,
+            missing_run_length: self.missing_run_length_um / 1e6,
+            seed: self.seed,
+        }
+    }
+}
+
+/// The parameters are checked in SI under the keys of a recipe.
+#[derive(Debug, thiserror::Error)]
+#[error("no scans can be made from these options (keys and values below as in a recipe, in SI)")]
+struct Impossible(#[source] SynthesisError);
+
+impl Synth {
+    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        let parameters = self.specimen.parameters();
+        let impossible = |error| CliError::input(Impossible(error));
+        parameters.validate().map_err(impossible)?;
+        let total = parameters.scans as f64 * (parameters.length / parameters.spacing);
+        if total > MAX_TOTAL_POINTS {
+            return Err(CliError::input(format!(
+                "{total:.1e} points are more than the {MAX_TOTAL_POINTS:.1e} that are made at once: lower --scans \
+                 or --length-mm, or raise --spacing-um"
+            )));
+        }
+        let scans = parameters.generate().map_err(impossible)?;
+        let file = |name: &str| self.out.join(format!("{name}.txt"));
+        let present = scans.iter().map(|scan| file(&scan.name)).find(|path| path.exists());
+        if let Some(path) = present.filter(|_| !self.force) {
+            return Err(already_exists(&path));
+        }
+        fs::create_dir_all(&self.out).map_err(|error| {
+            CliError::failure(format!("cannot create the folder {}: {error}", self.out.display()))
+        })?;
+        let interrupt = Interrupt::install()?;
+        for scan in &scans {
+            interrupt.check()?;
+            write_file(&file(&scan.name), self.force, |mut out| write_text(scan, &mut out))?;
+        }
+        let names: Vec<OsString> =
+            scans.iter().map(|scan| format!("{}.txt", scan.name).into()).collect();
+        let others = other_scans(&self.out, &names);
+        if others > 0 {
+            note(
+                quiet,
+                format_args!("warning: {} holds {others} other scans as well", self.out.display()),
+            );
+        }
+        let points = scans.first().map_or(0, |scan| scan.heights.len());
+        let lines = scans.iter().map(|scan| format!("{}\n", file(&scan.name).display()));
+        print(&if quiet {
+            String::new()
+        } else {
+            lines.collect::<String>()
+                + &format!("{points} points in each of {} files\n", scans.len())
+        })
+    }
+}
+
+/// Number of scans in the folder that were not written now; they would be taken for the same
+/// specimen.
+fn other_scans(folder: &Path, written: &[OsString]) -> usize {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let other = |name: &OsString| {
+        let text = name.to_string_lossy();
+        text.starts_with("scan_") && text.ends_with(".txt") && !written.contains(name)
+    };
+    entries.filter(|entry| other(&entry.file_name())).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        synth: Synth,
+    }
+
+    #[test]
+    fn the_defaults_are_the_bundled_specimen() {
+        let command = Command::parse_from(["synth", "--out", "scans"]);
+        assert_eq!(command.synth.specimen.parameters(), SyntheticAsphalt::specimen());
+    }
+}
