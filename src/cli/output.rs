@@ -42,7 +42,11 @@ pub(super) fn json(value: &impl serde::Serialize) -> Result<String, CliError> {
 /// Lines of a name and a value, the values aligned.
 pub(super) fn aligned(lines: &[(&str, String)]) -> String {
     let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    lines.iter().map(|(name, value)| format!("{name:<width$}  {value}\n")).collect()
+    let line = |(name, value): &(&str, String)| {
+        let value = value.replace('\n', &format!("\n{:width$}  ", ""));
+        format!("{name:<width$}  {value}\n")
+    };
+    lines.iter().map(line).collect()
 }
 
 /// A number with six significant digits, in exponential form where the plain one would be long.
@@ -137,6 +141,12 @@ mod tests {
         for (value, expected) in cases {
             assert_eq!(significant(value), expected);
         }
+    }
+
+    #[test]
+    fn values_are_aligned_also_over_several_lines() {
+        let text = aligned(&[("a", "1".into()), ("long", "2\n3".into())]);
+        assert_eq!(text, "a     1\nlong  2\n      3\n");
     }
 
     #[test]

@@ -1,0 +1,93 @@
+//! The binary as a user meets it: output, exit codes, files.
+
+mod inspect;
+mod solve;
+mod synth;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What a run of the binary gave.
+struct Outcome {
+    code: i32,
+    stdout: String,
+    stderr: String,
+}
+
+impl Outcome {
+    /// Standard output of a success that has nothing to complain about.
+    fn result(self) -> String {
+        assert_eq!((self.code, self.stderr.as_str()), (0, ""));
+        self.stdout
+    }
+
+    fn json(self) -> serde_json::Value {
+        serde_json::from_str(&self.result()).unwrap()
+    }
+
+    /// Standard error of a failure, which must not print a result.
+    fn error(self, code: i32) -> String {
+        assert_eq!((self.code, self.stdout.as_str()), (code, ""), "{}", self.stderr);
+        assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
+        self.stderr
+    }
+}
+
+fn binary() -> Command {
+    Command::new(assert_cmd::cargo::cargo_bin!("asperity"))
+}
+
+/// Runs the binary with arguments separated by blanks; a `{}` stands for the path.
+fn asperity_at(arguments: &str, path: &Path) -> Outcome {
+    let path = path.to_str().unwrap();
+    let arguments = arguments.split_whitespace().map(|argument| argument.replace("{}", path));
+    let output = binary().args(arguments).output().unwrap();
+    Outcome {
+        code: output.status.code().unwrap(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+fn asperity(arguments: &str) -> Outcome {
+    asperity_at(arguments, Path::new(""))
+}
+
+/// A path in the repository.
+fn project(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+#[test]
+fn help_and_version_succeed_on_standard_output() {
+    for arguments in ["--help", "--version", "solve bem --help", "synth -h", "help inspect"] {
+        assert!(asperity(arguments).result().contains("asperity"), "{arguments}");
+    }
+}
+
+#[test]
+fn unknown_commands_and_no_command_are_bad_input() {
+    assert!(asperity("slove").error(2).contains("'solve'"));
+    let nothing = asperity("");
+    assert_eq!((nothing.code, nothing.stdout.as_str()), (2, ""));
+    assert!(nothing.stderr.contains("Usage: asperity"));
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let scans = "solve bem --wave 1:0.01 --speed 1 --pressure 1";
+    let output = binary().args(scans.split(' ')).stdout(writer).output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), b"".as_slice()));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_a_failure() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let solve = "solve bem --wave 1:0.01 --speed 1 --pressure 1 --json";
+    let output = binary().args(solve.split(' ')).stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("cannot write to standard output"));
+}
