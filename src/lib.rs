@@ -24,6 +24,7 @@ pub mod contact;
 pub mod numerics;
 pub mod pipeline;
 pub mod recipe;
+pub mod report;
 pub mod rubber;
 pub mod scans;
 pub mod stages;

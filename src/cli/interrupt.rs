@@ -22,6 +22,11 @@ impl Interrupt {
         Ok(Self(flag))
     }
 
+    /// The flag itself, for computations that look at it.
+    pub(super) fn flag(&self) -> &AtomicBool {
+        &self.0
+    }
+
     /// # Errors
     /// [`CliError::Interrupted`] after Ctrl-C.
     pub(super) fn check(&self) -> Result<(), CliError> {

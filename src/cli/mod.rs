@@ -4,10 +4,15 @@
 //! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
 
 mod error;
+mod export;
 mod inspect;
 mod interrupt;
 mod output;
+mod progress;
+mod recipe_options;
+mod run;
 mod solve;
+mod status;
 mod synth;
 mod values;
 
@@ -29,6 +34,9 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Run(run::Run),
+    Status(status::Status),
+    Export(export::Export),
     /// Solve a single contact problem, without any recipe.
     #[command(subcommand)]
     Solve(solve::Solve),
@@ -43,6 +51,9 @@ impl Arguments {
     /// [`CliError`], whose exit code tells bad input from a failed computation.
     pub fn run(self) -> Result<(), CliError> {
         match self.command {
+            Command::Run(command) => command.run(self.quiet),
+            Command::Status(command) => command.run(),
+            Command::Export(command) => command.run(),
             Command::Solve(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),

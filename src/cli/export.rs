@@ -1,0 +1,162 @@
+//! `asperity export`: friction tables for people and other programs.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::CliError;
+use super::output::{print, write_file};
+use crate::artifact::{RunView, write_csv, write_parquet};
+use crate::report::{FrictionTable, data_frame, friction_figure, friction_tables, latex, markdown};
+use crate::stages::tables::{FRICTION_FILE, FrictionRow};
+
+const EXAMPLES: &str = "\
+Examples:
+  All tables of a run, one CSV file each:
+    asperity export runs/asphalt --format csv --to tables
+  One table on standard output, in the layout of the published ones:
+    asperity export runs/asphalt --format markdown --waves 8 --speed 10
+  All tables for a paper, as one Parquet table, and as a figure:
+    asperity export runs/asphalt --format latex --to friction.tex
+    asperity export runs/asphalt --format parquet --to friction.parquet
+    asperity export runs/asphalt --format svg --to friction.svg";
+
+/// Export the averaged friction tables of a run.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Export {
+    /// Run folder.
+    run: PathBuf,
+    /// Format: csv and markdown and latex in the layout of the published tables, parquet as one
+    /// long table, svg as a figure with the 95 % confidence band.
+    #[arg(long, value_enum)]
+    format: Format,
+    /// File to write, or for several CSV tables the folder; standard output if not given.
+    #[arg(long, value_name = "PATH")]
+    to: Option<PathBuf>,
+    /// Only this number of waves.
+    #[arg(long, value_name = "N")]
+    waves: Option<u32>,
+    /// Only this speed in mm/s.
+    #[arg(long, value_name = "MM_S")]
+    speed: Option<f64>,
+    /// Overwrite files that are there already.
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Csv,
+    Markdown,
+    Latex,
+    Parquet,
+    Svg,
+}
+
+impl Export {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`].
+    pub(super) fn run(self) -> Result<(), CliError> {
+        let view = RunView::of(&self.run);
+        let (rows, _) = view
+            .read_table::<FrictionRow>("tables", FRICTION_FILE)
+            .map_err(|error| CliError::input(error))?;
+        let rows: Vec<FrictionRow> = rows
+            .into_iter()
+            .filter(|row| self.waves.is_none_or(|waves| waves == row.waves))
+            .filter(|row| self.speed.is_none_or(|speed| speed == row.speed_mm_s))
+            .collect();
+        if rows.is_empty() {
+            return Err(CliError::input(format!(
+                "{} has no table of that number of waves and speed: leave --waves or --speed out \
+                 to see all",
+                self.run.display()
+            )));
+        }
+        let tables = friction_tables(&rows);
+        match self.format {
+            Format::Csv => self.csv(&tables),
+            Format::Markdown => self.text(&markdown(&tables, &self.rubber(&view))),
+            Format::Latex => self.text(&latex(&tables, &self.rubber(&view))),
+            Format::Svg => self.text(&friction_figure(&tables).map_err(CliError::failure)?),
+            Format::Parquet => {
+                let Some(path) = &self.to else {
+                    return Err(CliError::input("Parquet is binary: give a file with --to"));
+                };
+                let mut frame = data_frame(&rows).map_err(CliError::failure)?;
+                self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
+            }
+        }
+    }
+
+    /// Name of the rubber, from the manifest of the contacts.
+    fn rubber(&self, view: &RunView) -> String {
+        let manifest = view.stage_manifest("bem").ok().flatten();
+        let name =
+            manifest.and_then(|m| m.parameters["rubber"]["name"].as_str().map(str::to_owned));
+        name.unwrap_or_else(|| "unknown".into())
+    }
+
+    fn text(&self, text: &str) -> Result<(), CliError> {
+        match &self.to {
+            None => print(text),
+            Some(path) => write_file(path, self.force, |out| out.write_all(text.as_bytes())),
+        }
+    }
+
+    fn csv(&self, tables: &[FrictionTable]) -> Result<(), CliError> {
+        match (&self.to, tables) {
+            (None, [table]) => {
+                let folder = tempfile::tempdir().map_err(CliError::failure)?;
+                let path = folder.path().join("table.csv");
+                write_csv(&mut published(table)?, &path).map_err(CliError::failure)?;
+                print(&std::fs::read_to_string(path).map_err(CliError::failure)?)
+            }
+            (None, _) => Err(CliError::input(format!(
+                "there are {} tables: give a folder with --to, or choose one with --waves and \
+                 --speed",
+                tables.len()
+            ))),
+            (Some(path), [table]) if path.extension().is_some() => {
+                let mut frame = published(table)?;
+                self.by_rename(path, |temporary| write_csv(&mut frame, temporary))
+            }
+            (Some(folder), tables) => {
+                std::fs::create_dir_all(folder).map_err(|error| {
+                    CliError::failure(format!("cannot create {}: {error}", folder.display()))
+                })?;
+                for table in tables {
+                    let mut frame = published(table)?;
+                    let path = folder.join(table.file_stem()).with_extension("csv");
+                    self.by_rename(&path, |temporary| write_csv(&mut frame, temporary))?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes beside the place and moves there, so that the file is complete or not there.
+    fn by_rename(
+        &self,
+        path: &Path,
+        write: impl FnOnce(&Path) -> Result<(), crate::artifact::ArtifactError>,
+    ) -> Result<(), CliError> {
+        let folder = tempfile::tempdir().map_err(CliError::failure)?;
+        let temporary = folder.path().join("export");
+        write(&temporary).map_err(CliError::failure)?;
+        let bytes = std::fs::read(&temporary).map_err(CliError::failure)?;
+        write_file(path, self.force, |out| out.write_all(&bytes))
+    }
+}
+
+/// The table with the columns of the published ones and the interval.
+fn published(table: &FrictionTable) -> Result<polars::prelude::DataFrame, CliError> {
+    let frame = data_frame(&table.rows).map_err(CliError::failure)?;
+    let other = ["model", "waves", "speed_mm_s", "interpolation_error", "pressure_mpa"];
+    let keep = frame.get_column_names().into_iter().filter(|name| !other.contains(&name.as_str()));
+    let keep: Vec<String> = keep.map(ToString::to_string).collect();
+    frame.select(keep).map_err(CliError::failure)
+}

@@ -1,0 +1,67 @@
+//! Progress bars, on a terminal and for what takes more than a second.
+
+use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::stages::Stage;
+
+/// A stage that is done sooner needs no bar.
+const DELAY: Duration = Duration::from_secs(1);
+
+/// The bar of the stage under way.
+pub(super) struct Progress {
+    shown: bool,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    stage: Option<(Stage, Instant)>,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Bars on standard error if that is a terminal, else none.
+    pub(super) fn new(quiet: bool) -> Self {
+        let shown = !quiet && std::io::stderr().is_terminal();
+        Self { shown, state: Mutex::default() }
+    }
+
+    /// A stage begins.
+    pub(super) fn start(&self, stage: Stage) {
+        if let Ok(mut state) = self.state.lock() {
+            *state = State { stage: Some((stage, Instant::now())), bar: None };
+        }
+    }
+
+    /// Pieces of work are done.
+    pub(super) fn advance(&self, done: u64, total: u64) {
+        let Ok(mut state) = self.state.lock() else { return };
+        let Some((stage, start)) = state.stage else { return };
+        if !self.shown || start.elapsed() < DELAY {
+            return;
+        }
+        let bar = state.bar.get_or_insert_with(|| {
+            let template = "{prefix:<13} [{bar:30}] {pos}/{len}, {elapsed} so far, {eta} to go";
+            let style = ProgressStyle::with_template(template)
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
+            let bar = ProgressBar::new(total).with_style(style).with_elapsed(start.elapsed());
+            bar.with_prefix(stage.name())
+        });
+        bar.set_length(total);
+        // Threads report in any order.
+        bar.set_position(bar.position().max(done));
+    }
+
+    /// The stage has ended.
+    pub(super) fn finish(&self) {
+        if let Ok(mut state) = self.state.lock()
+            && let Some(bar) = std::mem::take(&mut *state).bar
+        {
+            bar.finish_and_clear();
+        }
+    }
+}

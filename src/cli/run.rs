@@ -1,0 +1,114 @@
+//! `asperity run`: a recipe from scans to tables.
+
+use clap::Args;
+use serde::Serialize;
+use std::sync::Mutex;
+
+use super::interrupt::Interrupt;
+use super::output::{json, note, print};
+use super::progress::Progress;
+use super::recipe_options::RecipeOptions;
+use super::{CliError, values};
+use crate::pipeline::{self, Event, Selection};
+use crate::stages::Stage;
+
+const EXAMPLES: &str = "\
+Examples:
+  The bundled scans, from raw text to averaged friction tables in runs/asphalt:
+    asperity run pipelines/asphalt.toml
+  Your own scans, read as the recipe says:
+    asperity run pipelines/asphalt.toml --scans measured/*.txt --out runs/mine
+  One stage again, its inputs as they are:
+    asperity run pipelines/asphalt.toml --only tables
+  All from one stage on, computed again even if nothing changed:
+    asperity run pipelines/asphalt.toml --from bem --force bem";
+
+/// Bring the results of a recipe up to date.
+///
+/// A stage whose parameters, inputs and code are unchanged is not computed again. A stopped run
+/// continues where it stopped, solve by solve.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Run {
+    #[command(flatten)]
+    recipe: RecipeOptions,
+    /// Only this stage; what it reads must be up to date.
+    #[arg(long, value_name = "STAGE", conflicts_with = "from")]
+    only: Option<Stage>,
+    /// This stage and those after it; what it reads must be up to date.
+    #[arg(long, value_name = "STAGE")]
+    from: Option<Stage>,
+    /// Compute this stage even if it is up to date.
+    #[arg(long, value_name = "STAGE")]
+    force: Option<Stage>,
+    /// Number of threads; all cores if not given. The numbers do not depend on it.
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
+    threads: Option<usize>,
+    /// Print what was done as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was done about a stage.
+#[derive(Serialize)]
+struct StageSummary {
+    stage: Stage,
+    computed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seconds: Option<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<String>,
+}
+
+impl Run {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`].
+    pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
+        let recipe = self.recipe.recipe()?;
+        if let Some(threads) = self.threads {
+            if threads == 0 {
+                return Err(CliError::input("--threads is 0: give at least 1"));
+            }
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build_global()
+                .map_err(CliError::failure)?;
+        }
+        let out = self.recipe.out();
+        let selection = Selection { only: self.only, from: self.from, force: self.force };
+        let interrupt = Interrupt::install()?;
+        let progress = Progress::new(quiet);
+        let summaries = Mutex::new(Vec::new());
+        let record = |summary: StageSummary| {
+            if let Ok(mut summaries) = summaries.lock() {
+                summaries.push(summary);
+            }
+        };
+        pipeline::run(&recipe, &out, selection, interrupt.flag(), &|event| match event {
+            Event::Started(stage) => progress.start(stage),
+            Event::Progress(_, done, total) => progress.advance(done, total),
+            Event::Finished(stage, manifest) => {
+                progress.finish();
+                note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
+                for warning in &manifest.warnings {
+                    note(quiet, format_args!("  warning: {warning}"));
+                }
+                let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
+                record(StageSummary { stage, computed: true, seconds, warnings });
+            }
+            Event::Fresh(stage) => {
+                note(quiet, format_args!("{stage:<13} up to date"));
+                record(StageSummary { stage, computed: false, seconds: None, warnings: vec![] });
+            }
+        })
+        .inspect_err(|_| progress.finish())?;
+        if self.json {
+            let stages = summaries.into_inner().unwrap_or_default();
+            return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);
+        }
+        note(quiet, format_args!("results in {}", out.display()));
+        Ok(())
+    }
+}

@@ -1,0 +1,7 @@
+//! Friction tables and figures for people.
+
+mod figure;
+mod tables;
+
+pub use figure::{FigureError, friction_figure};
+pub use tables::{FrictionTable, data_frame, friction_tables, latex, markdown};

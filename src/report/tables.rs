@@ -1,0 +1,210 @@
+//! Friction tables in the layout of the published ones: contact area in the first column, one
+//! column per realisation, their average.
+
+use crate::stages::tables::FrictionRow;
+use polars::prelude::{Column, DataFrame, PolarsError};
+use std::fmt::Write;
+
+/// Friction over contact area for one number of waves and one speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionTable {
+    /// Contact model.
+    pub model: String,
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// Rows by ascending contact area.
+    pub rows: Vec<FrictionRow>,
+}
+
+/// Sorts rows into tables.
+pub fn friction_tables(rows: &[FrictionRow]) -> Vec<FrictionTable> {
+    let key = |row: &FrictionRow| (row.model.clone(), row.waves, row.speed_mm_s);
+    rows.chunk_by(|a, b| key(a) == key(b))
+        .map(|rows| FrictionTable {
+            model: rows[0].model.clone(),
+            waves: rows[0].waves,
+            speed_mm_s: rows[0].speed_mm_s,
+            rows: rows.to_vec(),
+        })
+        .collect()
+}
+
+impl FrictionTable {
+    /// What the table holds, in one line; `rubber` is the name of the rubber.
+    pub fn caption(&self, rubber: &str) -> String {
+        format!(
+            "Friction coefficient over contact area fraction, model {}, {} waves, {} mm/s, {} \
+             realisations, rubber {rubber}, asperity {}",
+            self.model,
+            self.waves,
+            self.speed_mm_s,
+            self.realisations(),
+            crate::artifact::TOOL_VERSION
+        )
+    }
+
+    /// Name for a file of the table, without extension.
+    pub fn file_stem(&self) -> String {
+        format!("friction_{}_{}_waves_{}_mm_s", self.model, self.waves, self.speed_mm_s)
+    }
+
+    fn realisations(&self) -> usize {
+        self.rows.first().map_or(0, |row| row.realisations.len())
+    }
+
+    fn header(&self) -> Vec<String> {
+        let mut header = vec!["area_fraction".to_owned()];
+        header.extend((1..=self.realisations()).map(|k| format!("realisation_{k}")));
+        let rest = ["average", "standard_deviation", "confidence_95"];
+        header.extend(rest.map(str::to_owned));
+        header
+    }
+
+    /// Cells as text; friction with five decimals, as published.
+    fn cells(&self) -> impl Iterator<Item = Vec<String>> {
+        let optional = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.5}"));
+        self.rows.iter().map(move |row| {
+            let mut cells = vec![row.contact_area_fraction.to_string()];
+            cells.extend(row.realisations.iter().map(|friction| format!("{friction:.5}")));
+            cells.push(format!("{:.5}", row.mean));
+            cells.push(optional(row.standard_deviation));
+            cells.push(optional(row.confidence_95));
+            cells
+        })
+    }
+}
+
+/// Rows as one long data frame with all digits, a column per realisation.
+///
+/// # Errors
+/// [`PolarsError`] if polars refuses the columns.
+pub fn data_frame(rows: &[FrictionRow]) -> Result<DataFrame, PolarsError> {
+    let column = |name: &str, value: fn(&FrictionRow) -> f64| {
+        Column::new(name.into(), rows.iter().map(value).collect::<Vec<f64>>())
+    };
+    let optional = |name: &str, value: fn(&FrictionRow) -> Option<f64>| {
+        Column::new(name.into(), rows.iter().map(value).collect::<Vec<Option<f64>>>())
+    };
+    let models: Vec<&str> = rows.iter().map(|row| row.model.as_str()).collect();
+    let waves: Vec<u32> = rows.iter().map(|row| row.waves).collect();
+    let mut columns = vec![
+        Column::new("model".into(), models),
+        Column::new("waves".into(), waves),
+        column("speed_mm_s", |row| row.speed_mm_s),
+        column("area_fraction", |row| row.contact_area_fraction),
+    ];
+    let most = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
+    for k in 0..most {
+        let values: Vec<Option<f64>> =
+            rows.iter().map(|row| row.realisations.get(k).copied()).collect();
+        columns.push(Column::new(format!("realisation_{}", k + 1).into(), values));
+    }
+    columns.push(column("average", |row| row.mean));
+    columns.push(optional("standard_deviation", |row| row.standard_deviation));
+    columns.push(optional("confidence_95", |row| row.confidence_95));
+    columns.push(column("interpolation_error", |row| row.interpolation_error));
+    columns.push(column("pressure_mpa", |row| row.pressure_mpa));
+    DataFrame::new(rows.len(), columns)
+}
+
+/// Tables as Markdown, each with its caption.
+pub fn markdown(tables: &[FrictionTable], rubber: &str) -> String {
+    let mut text = String::new();
+    for table in tables {
+        let header = table.header();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}\n", table.caption(rubber));
+        let _ = writeln!(text, "| {} |", header.join(" | "));
+        let _ = writeln!(text, "|{}", "---:|".repeat(header.len()));
+        for cells in table.cells() {
+            let _ = writeln!(text, "| {} |", cells.join(" | "));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Tables as LaTeX with booktabs, each a floating table with its caption.
+pub fn latex(tables: &[FrictionTable], rubber: &str) -> String {
+    let mut text = String::new();
+    for table in tables {
+        let n = table.realisations();
+        let mut header = vec!["$A_c/A_0$".to_owned()];
+        header.extend((1..=n).map(|k| k.to_string()));
+        header.extend(["average", "s.d.", "95\\,\\%"].map(str::to_owned));
+        let columns = format!("S[table-format=1.3]{}", "S[table-format=1.5]".repeat(n + 3));
+        let braced: Vec<String> = header.iter().map(|cell| format!("{{{cell}}}")).collect();
+        let _ = writeln!(text, "% needs the packages booktabs and siunitx");
+        let _ = writeln!(text, "\\begin{{table}}\n\\centering");
+        let _ = writeln!(text, "\\caption{{{}}}", escape(&table.caption(rubber)));
+        let _ = writeln!(text, "\\begin{{tabular}}{{{columns}}}\n\\toprule");
+        let _ = writeln!(text, "{} \\\\\n\\midrule", braced.join(" & "));
+        for cells in table.cells() {
+            let _ = writeln!(text, "{} \\\\", cells.join(" & "));
+        }
+        let _ = writeln!(text, "\\bottomrule\n\\end{{tabular}}\n\\end{{table}}\n");
+    }
+    text
+}
+
+/// Text with the characters that LaTeX takes for commands made harmless.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '\\' => escaped.push_str("\\textbackslash{}"),
+            '~' => escaped.push_str("\\textasciitilde{}"),
+            '^' => escaped.push_str("\\textasciicircum{}"),
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
+                escaped.push('\\');
+                escaped.push(character);
+            }
+            _ => escaped.push(character),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
+        FrictionRow {
+            model: "bem".into(),
+            waves,
+            speed_mm_s: 10.0,
+            contact_area_fraction: area,
+            realisations: realisations.to_vec(),
+            mean: 0.5,
+            standard_deviation: (realisations.len() > 1).then_some(0.1),
+            confidence_95: None,
+            interpolation_error: 0.0,
+            pressure_mpa: 1.0,
+        }
+    }
+
+    #[test]
+    fn the_layout_is_that_of_the_published_tables() {
+        let rows =
+            [row(8, 0.002, &[0.701, 0.53646]), row(8, 0.05, &[0.9, 0.8]), row(9, 0.1, &[1.0])];
+        let tables = friction_tables(&rows);
+        assert_eq!(tables.len(), 2);
+        let text = markdown(&tables, "50 % silica_x");
+        assert!(text.contains("| area_fraction | realisation_1 | realisation_2 | average |"));
+        assert!(text.contains("| 0.002 | 0.70100 | 0.53646 | 0.50000 | 0.10000 |  |"), "{text}");
+        let text = latex(&tables, "50 % silica_x");
+        assert!(text.contains("rubber 50 \\% silica\\_x"), "{text}");
+        assert_eq!(text.matches("\\toprule").count(), 2);
+        assert_eq!(tables[1].file_stem(), "friction_bem_9_waves_10_mm_s");
+    }
+
+    #[test]
+    fn the_data_frame_leaves_absent_realisations_empty() {
+        let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
+        assert_eq!(frame.shape(), (2, 11));
+        assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
+    }
+}
