@@ -61,9 +61,8 @@ impl Export {
     /// [`CliError`].
     pub(super) fn run(self) -> Result<(), CliError> {
         let view = RunView::of(&self.run);
-        let (rows, _) = view
-            .read_table::<FrictionRow>("tables", FRICTION_FILE)
-            .map_err(|error| CliError::input(error))?;
+        let (rows, _) =
+            view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;
         let rows: Vec<FrictionRow> = rows
             .into_iter()
             .filter(|row| self.waves.is_none_or(|waves| waves == row.waves))
