@@ -168,6 +168,7 @@ struct Plan<'a> {
     recipe: &'a Recipe,
     scans: Vec<ScanFile>,
     rubber: Rubber,
+    published: Vec<Input>,
 }
 
 impl<'a> Plan<'a> {
@@ -178,7 +179,8 @@ impl<'a> Plan<'a> {
             None => Vec::new(),
         };
         let rubber = bem::rubber(&recipe.bem).map_err(of(Stage::Bem))?;
-        Ok(Self { recipe, scans, rubber })
+        let published = tables::inputs(&recipe.tables).map_err(of(Stage::Tables))?;
+        Ok(Self { recipe, scans, rubber, published })
     }
 
     /// The stages of the recipe; one that states its waves needs no scans.
@@ -229,12 +231,11 @@ impl<'a> Plan<'a> {
                 recipe.bem.resolved(&self.rubber),
                 from(Stage::Realise, realise::SURFACES_FILE)?,
             ),
-            Stage::Tables => (
-                tables::REVISION,
-                tables::schemas(),
-                json!(recipe.tables),
-                from(Stage::Bem, bem::CURVES_FILE)?,
-            ),
+            Stage::Tables => {
+                let mut inputs = from(Stage::Bem, bem::CURVES_FILE)?;
+                inputs.extend(self.published.iter().cloned());
+                (tables::REVISION, tables::schemas(), json!(recipe.tables), inputs)
+            }
         };
         let stage = stage.name().to_owned();
         Ok(Identity { stage, stage_revision, output_schemas, parameters, inputs })
@@ -266,7 +267,7 @@ fn compute(
             let store = SolveStore::open(path)?;
             bem::run(&recipe.bem, &plan.rubber, folder, &store, context)
         }
-        Stage::Tables => tables::run(folder, context),
+        Stage::Tables => tables::run(&recipe.tables, folder, context),
     }
 }
 

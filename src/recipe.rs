@@ -116,6 +116,9 @@ impl Recipe {
             *scans = folder.join(&*scans);
         }
         recipe.bem.rubber = folder.join(&recipe.bem.rubber);
+        for published in &mut recipe.tables.published {
+            published.file = folder.join(&published.file);
+        }
         Ok(recipe)
     }
 

@@ -7,8 +7,11 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::output::{print, write_file};
 use crate::artifact::{RunView, write_csv, write_parquet};
-use crate::report::{FrictionTable, data_frame, friction_figure, friction_tables, latex, markdown};
-use crate::stages::tables::{FRICTION_FILE, FrictionRow};
+use crate::report::{
+    FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
+    markdown,
+};
+use crate::stages::tables::{COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, NOTE_KEY};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +34,9 @@ pub(super) struct Export {
     /// long table, svg as a figure with the 95 % confidence band.
     #[arg(long, value_enum)]
     format: Format,
+    /// The computed tables beside the published ones that the recipe names, as a Markdown document.
+    #[arg(long)]
+    comparison: bool,
     /// File to write, or for several CSV tables the folder; standard output if not given.
     #[arg(long, value_name = "PATH")]
     to: Option<PathBuf>,
@@ -63,6 +69,9 @@ impl Export {
         let view = RunView::of(&self.run);
         let (rows, _) =
             view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;
+        if self.comparison {
+            return self.comparison(&view, &rows);
+        }
         let rows: Vec<FrictionRow> = rows
             .into_iter()
             .filter(|row| self.waves.is_none_or(|waves| waves == row.waves))
@@ -89,6 +98,17 @@ impl Export {
                 self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
             }
         }
+    }
+
+    fn comparison(&self, view: &RunView, rows: &[FrictionRow]) -> Result<(), CliError> {
+        if self.format != Format::Markdown {
+            return Err(CliError::input("a comparison is a document: give --format markdown"));
+        }
+        let (compared, metadata) =
+            view.read_table::<ComparisonRow>("tables", COMPARISON_FILE).map_err(CliError::input)?;
+        let note = metadata.get(NOTE_KEY).map_or("", String::as_str);
+        let realisations = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
+        self.text(&comparison_markdown(note, &compared, realisations))
     }
 
     /// Name of the rubber, from the manifest of the contacts.

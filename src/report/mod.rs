@@ -4,4 +4,6 @@ mod figure;
 mod tables;
 
 pub use figure::{FigureError, friction_figure};
-pub use tables::{FrictionTable, data_frame, friction_tables, latex, markdown};
+pub use tables::{
+    FrictionTable, comparison_markdown, data_frame, friction_tables, latex, markdown,
+};

@@ -1,7 +1,7 @@
 //! Friction tables in the layout of the published ones: contact area in the first column, one
 //! column per realisation, their average.
 
-use crate::stages::tables::FrictionRow;
+use crate::stages::tables::{ComparisonRow, FrictionRow};
 use polars::prelude::{Column, DataFrame, PolarsError};
 use std::fmt::Write;
 
@@ -120,6 +120,39 @@ pub fn markdown(tables: &[FrictionTable], rubber: &str) -> String {
         let _ = writeln!(text, "|{}", "---:|".repeat(header.len()));
         for cells in table.cells() {
             let _ = writeln!(text, "| {} |", cells.join(" | "));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Computed beside published friction as Markdown, a table for each published one, after the note
+/// of the recipe.
+pub fn comparison_markdown(note: &str, rows: &[ComparisonRow], realisations: usize) -> String {
+    let mut text = format!("{}\n\n", note.trim());
+    for table in rows.chunk_by(|a, b| a.published_table == b.published_table) {
+        let first = &table[0];
+        let _ = writeln!(
+            text,
+            "## {}\n\n{} waves, {} mm/s; computed: mean of {realisations} realisations and half \
+             width of its 95 % confidence interval, asperity {}\n",
+            first.published_table,
+            first.waves,
+            first.speed_mm_s,
+            crate::artifact::TOOL_VERSION
+        );
+        text.push_str("| area fraction | published | computed | 95 % | difference |\n");
+        text.push_str("|---:|---:|---:|---:|---:|\n");
+        for row in table {
+            let interval = row.confidence_95.map_or(String::new(), |half| format!("± {half:.3}"));
+            let _ = writeln!(
+                text,
+                "| {} | {:.3} | {:.3} | {interval} | {:+.1} % |",
+                row.contact_area_fraction,
+                row.published,
+                row.computed,
+                100.0 * row.relative_difference
+            );
         }
         text.push('\n');
     }

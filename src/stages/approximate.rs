@@ -1,6 +1,6 @@
 //! approximate: amplitudes of superposed sines with the correlation of the scans.
 
-use super::characterise::{AVERAGE, CORRELATION_FILE, CorrelationRow};
+use super::characterise::{AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::student_t_975;
@@ -209,8 +209,9 @@ pub fn run(
     if !parameters.given.is_empty() {
         return write_given(parameters, context);
     }
-    let (rows, _) = run.read_table::<CorrelationRow>("characterise", CORRELATION_FILE)?;
-    let correlations = Correlations::of(rows, parameters.longest_lag_mm);
+    let (rows, metadata) = run.read_table::<CorrelationRow>("characterise", CORRELATION_FILE)?;
+    let window_length = metadata.get(WINDOW_LENGTH_KEY).and_then(|mm| mm.parse::<f64>().ok());
+    let correlations = Correlations::of(rows, parameters.longest_lag_mm, window_length);
     let (mut scales, mut fits, mut fitted, mut warnings) = (vec![], vec![], vec![], vec![]);
     for &waves in &parameters.waves {
         context.check_interrupt()?;
@@ -226,6 +227,12 @@ pub fn run(
         let intervals = correlations.jackknife(&fit, &wavelengths).map_err(in_this)?;
         let beyond: Vec<String> = beyond.iter().map(ToString::to_string).collect();
         warnings.extend(beyond.iter().map(|warning| format!("{waves} waves: {warning}")));
+        warnings.extend(fit.sine_scales().iter().filter(|scale| scale.amplitude == 0.0).map(
+            |scale| {
+                let wavelength_mm = scale.wavelength * 1e3;
+                format!("{waves} waves: the correlation has no place for {wavelength_mm} mm: its amplitude is 0")
+            },
+        ));
         scales.extend(scale_rows(waves, &fit, &intervals));
         fits.push(fit_row(waves, &fit, beyond.join("; ")));
         fitted.extend(fitted_rows(waves, &fit, &correlations.average));
@@ -277,11 +284,13 @@ struct Correlations {
 }
 
 impl Correlations {
-    fn of(rows: Vec<CorrelationRow>, longest_lag_mm: Option<f64>) -> Self {
+    fn of(
+        rows: Vec<CorrelationRow>,
+        longest_lag_mm: Option<f64>,
+        window_length_mm: Option<f64>,
+    ) -> Self {
         let mut by_scan: BTreeMap<String, Vec<CorrelationSample>> = BTreeMap::new();
-        let mut longest = 0.0_f64;
         for row in rows {
-            longest = longest.max(row.lag_mm / 1e3);
             // Log-spaced lags must be positive, and so must a correlation whose log is fitted.
             let within = longest_lag_mm.is_none_or(|limit| row.lag_mm <= limit * (1.0 + 1e-9));
             if within && row.lag_mm > 0.0 {
@@ -295,8 +304,8 @@ impl Correlations {
         let average = by_scan.remove(AVERAGE).unwrap_or_default();
         let spacing = average.first().map_or(0.0, |sample| sample.lag);
         let windows: Vec<_> = by_scan.into_values().collect();
-        // A window of n points has n pairs at lag 0, one fewer at the first lag.
-        let window_length = 2.0 * longest;
+        // The schema version promises the length; without it nothing is determined.
+        let window_length = window_length_mm.unwrap_or(0.0) / 1e3;
         Self { average, windows, spacing, window_length }
     }
 

@@ -89,6 +89,8 @@ pub const CORRELATION_FILE: &str = "correlation.arrow";
 pub const SPECTRUM_FILE: &str = "spectrum.arrow";
 /// Self-affine fit, per window and averaged: `self_affine.arrow`.
 pub const SELF_AFFINE_FILE: &str = "self_affine.arrow";
+/// Metadata of [`CORRELATION_FILE`]: length of the shortest window in millimetres.
+pub const WINDOW_LENGTH_KEY: &str = "window_length_mm";
 /// What stands in the column `scan` for the average over all windows.
 pub const AVERAGE: &str = "average";
 
@@ -288,7 +290,8 @@ pub fn run(
         .zip(correlations.iter().chain([&average]))
         .flat_map(|(name, c)| correlation_rows(name, c, parameters.lags_per_decade))
         .collect();
-    context.pending.write_table(CORRELATION_FILE, &rows, &none)?;
+    let metadata = Metadata::from([(WINDOW_LENGTH_KEY.to_owned(), shortest_window_mm(&windows))]);
+    context.pending.write_table(CORRELATION_FILE, &rows, &metadata)?;
     let bins = parameters.spectrum_bins_per_decade;
     let rows: Vec<_> = with_average()
         .zip(spectra.iter().chain([&mean_spectrum]))
@@ -298,6 +301,14 @@ pub fn run(
     let (rows, warnings) = self_affine(parameters, &names, &correlations)?;
     context.pending.write_table(SELF_AFFINE_FILE, &rows, &none)?;
     Ok(warnings)
+}
+
+/// Length of the shortest window as text. The part of a scan that fills no further point counts:
+/// a scan cut to whole points is up to one spacing longer than its points.
+fn shortest_window_mm(windows: &[crate::surface::LineScan]) -> String {
+    let length = |window: &crate::surface::LineScan| window.length() + window.spacing;
+    let shortest = windows.iter().map(length).fold(f64::INFINITY, f64::min);
+    (shortest * 1e3).to_string()
 }
 
 fn parameters_row((scan, roughness): (String, &RoughnessParameters)) -> ParametersRow {

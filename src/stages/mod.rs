@@ -200,6 +200,14 @@ pub enum StageError {
         /// Why.
         source: Box<crate::contact::curve::CurveError<SolveError>>,
     },
+    /// A published table.
+    #[error("published table {}: {source}; it needs the columns area_fraction and average", path.display())]
+    Published {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: csv::Error,
+    },
     /// The user's interrupt.
     #[error("interrupted; what is done is kept, the same command continues")]
     Interrupted,

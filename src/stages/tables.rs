@@ -2,18 +2,40 @@
 
 use super::bem::{CURVES_FILE, CurveRow};
 use super::{Context, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 1;
 
-/// Section `[tables]` of a recipe; it has no keys yet.
+/// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Tables {
+    /// Published tables to stand beside the computed ones.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub published: Vec<Published>,
+    /// What a reader of the comparison should know, in Markdown.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// A published table of friction over contact area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Tables {}
+pub struct Published {
+    /// What it is called where it was published.
+    pub name: String,
+    /// Number of waves of its approximation.
+    pub waves: u32,
+    /// Its sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// CSV file with at least the columns `area_fraction` and `average`.
+    pub file: PathBuf,
+}
 
 /// The averaged friction: `friction.arrow`.
 pub const FRICTION_FILE: &str = "friction.arrow";
@@ -57,19 +79,117 @@ impl Row for FrictionRow {
     const VERSION: u32 = 1;
 }
 
-/// Schemas of the results.
-pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<FrictionRow>()]
+/// Computed beside published friction: `comparison.arrow`, where the recipe names published
+/// tables.
+pub const COMPARISON_FILE: &str = "comparison.arrow";
+/// Metadata of [`COMPARISON_FILE`]: the note of the recipe.
+pub const NOTE_KEY: &str = "note";
+
+/// Computed beside published friction at one contact area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ComparisonRow {
+    /// Name of the published table.
+    pub published_table: String,
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Contact area fraction.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Published average.
+    #[schemars(extend("unit" = "1"))]
+    pub published: f64,
+    /// Computed mean.
+    #[schemars(extend("unit" = "1"))]
+    pub computed: f64,
+    /// Half width of the 95 % confidence interval of the computed mean.
+    #[schemars(extend("unit" = "1"))]
+    pub confidence_95: Option<f64>,
+    /// Computed less published, over published.
+    #[schemars(extend("unit" = "1"))]
+    pub relative_difference: f64,
 }
 
-/// Averages the curves and writes the table; returns warnings.
+impl Row for ComparisonRow {
+    const SCHEMA: &'static str = "asperity.tables.comparison";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![schema_of::<FrictionRow>(), schema_of::<ComparisonRow>()]
+}
+
+/// The published tables as inputs of the stage.
 ///
 /// # Errors
-/// Those of the store.
-pub fn run(run: &RunView, context: &mut Context) -> Result<Vec<String>, StageError> {
+/// [`StageError::Artifact`] for a file that cannot be read.
+pub fn inputs(parameters: &Tables) -> Result<Vec<Input>, StageError> {
+    let input = |published: &Published| {
+        Ok(Input {
+            name: published.name.clone(),
+            digest: Digest::of_file(&published.file)?,
+            origin: Some(published.file.display().to_string()),
+        })
+    };
+    parameters.published.iter().map(input).collect()
+}
+
+/// Averages the curves and writes the tables; returns warnings.
+///
+/// # Errors
+/// [`StageError::Published`] for a published table that cannot be read; those of the store.
+pub fn run(
+    parameters: &Tables,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
     let (curves, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
-    context.pending.write_table(FRICTION_FILE, &average(curves), &Metadata::new())?;
+    let rows = average(curves);
+    context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
+    if parameters.published.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut compared = Vec::new();
+    for published in &parameters.published {
+        compared.extend(compare(published, &rows)?);
+    }
+    let metadata = Metadata::from([(NOTE_KEY.to_owned(), parameters.note.clone())]);
+    context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
     Ok(Vec::new())
+}
+
+/// The computed rows that the published table has too.
+fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<ComparisonRow>, StageError> {
+    #[derive(Deserialize)]
+    struct Line {
+        area_fraction: f64,
+        average: f64,
+    }
+    let bad = |source| StageError::Published { path: published.file.clone(), source };
+    let mut reader = csv::Reader::from_path(&published.file).map_err(bad)?;
+    let mut compared = Vec::new();
+    for line in reader.deserialize::<Line>() {
+        let line = line.map_err(bad)?;
+        let computed = rows.iter().find(|row| {
+            row.waves == published.waves
+                && row.speed_mm_s == published.speed_mm_s
+                && row.contact_area_fraction == line.area_fraction
+        });
+        compared.extend(computed.map(|row| ComparisonRow {
+            published_table: published.name.clone(),
+            waves: row.waves,
+            speed_mm_s: row.speed_mm_s,
+            contact_area_fraction: row.contact_area_fraction,
+            published: line.average,
+            computed: row.mean,
+            confidence_95: row.confidence_95,
+            relative_difference: row.mean / line.average - 1.0,
+        }));
+    }
+    Ok(compared)
 }
 
 /// One row for each number of waves, speed and area, ascending.
