@@ -1,11 +1,12 @@
 //! Interpolation between a few expensive points.
 
-/// Piecewise cubic Hermite interpolant with a continuous slope.
+/// Piecewise cubic Hermite interpolant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CubicHermite {
     x: Vec<f64>,
     y: Vec<f64>,
-    slope: Vec<f64>,
+    /// Slopes at the points; none for straight lines.
+    slope: Option<Vec<f64>>,
 }
 
 impl CubicHermite {
@@ -26,6 +27,15 @@ impl CubicHermite {
     /// As [`Self::monotone`].
     pub fn smooth(x: Vec<f64>, y: Vec<f64>) -> Self {
         Self::with_slopes(x, y, parabola_slope, parabola_end_slope)
+    }
+
+    /// Straight lines between the points.
+    ///
+    /// # Panics
+    /// As [`Self::monotone`].
+    pub fn linear(x: Vec<f64>, y: Vec<f64>) -> Self {
+        check(&x, &y);
+        Self { x, y, slope: None }
     }
 
     fn with_slopes(x: Vec<f64>, y: Vec<f64>, inner: SlopeRule, end: SlopeRule) -> Self {
@@ -50,7 +60,7 @@ impl CubicHermite {
                 slope
             }
         };
-        Self { x, y, slope }
+        Self { x, y, slope: Some(slope) }
     }
 
     /// Value at `x`; beyond the ends the value of the end, since extrapolation is no data.
@@ -65,12 +75,20 @@ impl CubicHermite {
         let i = self.x.partition_point(|knot| *knot <= x) - 1;
         let step = self.x[i + 1] - self.x[i];
         let t = (x - self.x[i]) / step;
+        let Some(slope) = &self.slope else {
+            return (1.0 - t) * self.y[i] + t * self.y[i + 1];
+        };
         let (t2, t3) = (t * t, t * t * t);
         (2.0 * t3 - 3.0 * t2 + 1.0) * self.y[i]
-            + (t3 - 2.0 * t2 + t) * step * self.slope[i]
+            + (t3 - 2.0 * t2 + t) * step * slope[i]
             + (3.0 * t2 - 2.0 * t3) * self.y[i + 1]
-            + (t3 - t2) * step * self.slope[i + 1]
+            + (t3 - t2) * step * slope[i + 1]
     }
+}
+
+fn check(x: &[f64], y: &[f64]) {
+    assert!(x.len() == y.len() && !x.is_empty(), "as many abscissae as ordinates, at least one");
+    assert!(x.windows(2).all(|w| w[0] < w[1]), "abscissae must ascend");
 }
 
 /// Slope at a point from two neighbouring steps and the secants over them; at an end the nearer
@@ -113,7 +131,7 @@ mod tests {
 
     #[test]
     fn a_straight_line_is_exact() {
-        for rule in [CubicHermite::monotone, CubicHermite::smooth] {
+        for rule in [CubicHermite::monotone, CubicHermite::smooth, CubicHermite::linear] {
             let line = rule(vec![0.0, 1.0, 4.0], vec![1.0, 3.0, 9.0]);
             for x in [0.0, 0.3, 2.0, 3.9, 4.0] {
                 approx::assert_abs_diff_eq!(line.at(x), 1.0 + 2.0 * x, epsilon = 1e-14);
