@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`artifact`] | tables (Arrow), arrays (HDF5), manifests, digests and the folder of a run |
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
+//! | [`reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`scans`] | readers of instrument files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
 //!
@@ -20,6 +21,7 @@
 pub mod artifact;
 pub mod contact;
 pub mod numerics;
+pub mod reference;
 pub mod rubber;
 pub mod scans;
 pub mod surface;

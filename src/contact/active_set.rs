@@ -7,6 +7,7 @@
 
 use super::half_space::HalfSpace;
 use super::preconditioner::Preconditioner;
+use super::solution::displacement_scale;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
 /// How accurate a grid has to be.
@@ -156,7 +157,7 @@ impl Contact<'_> {
         report.iterations
     }
 
-    /// Largest separation on the set over the root mean square displacement.
+    /// Largest separation on the set over the scale of displacements.
     fn residual(&self, set: &[u32]) -> f64 {
         let scale = self.displacement_scale();
         let largest =
@@ -169,10 +170,7 @@ impl Contact<'_> {
     }
 
     fn displacement_scale(&self) -> f64 {
-        let n = self.displacement.len() as f64;
-        let rms = euclidean_norm(&self.displacement) / n.sqrt();
-        // A flat profile has no displacement and no residual either.
-        if rms > 0.0 { rms } else { 1.0 }
+        displacement_scale(&self.displacement, self.heights)
     }
 
     fn violations(&self, set: &[u32], goal: Goal) -> Violations {
