@@ -53,8 +53,13 @@ const TIGHT: f64 = 1e-8;
 /// Active-set iterations with loose, then with tight linear solves.
 const LOOSE_ITERATIONS: usize = 25;
 const MOST_ITERATIONS: usize = 600;
+/// Iteration after which the set grows afresh from the highest point: the start was too far off,
+/// for example because the coarser grids miss a peak of one point that carries the load.
+const RESTART_ITERATION: usize = 60;
 /// Iterations before a growing number of changes is damped.
 const UNDAMPED_ITERATIONS: usize = 3;
+/// Share of a run of wrong points that changes sides at least.
+const LEAST_DAMPING: f64 = 0.1;
 /// Iterations after which a coarse grid has done its duty, converged or not.
 const START_ITERATIONS: usize = 40;
 const MOST_KRYLOV_ITERATIONS: usize = 120;
@@ -102,12 +107,16 @@ impl Contact<'_> {
             tight = changes == 0 || iteration > LOOSE_ITERATIONS;
             if iteration > UNDAMPED_ITERATIONS {
                 let grows = changes >= previous;
-                damping = if grows { 0.5 * damping } else { (1.5 * damping).min(1.0) };
+                damping = if grows {
+                    (0.5 * damping).max(LEAST_DAMPING)
+                } else {
+                    (1.5 * damping).min(1.0)
+                };
             }
             previous = changes;
             set = exchange(&set, &wrong, damping, self.heights.len());
-            if set.is_empty() {
-                set.push(self.highest_point());
+            if set.is_empty() || iteration == RESTART_ITERATION {
+                set = vec![self.highest_point()];
             }
             self.keep_pressure_on(&set);
         }

@@ -72,9 +72,7 @@ impl SlidingContact {
         heights: &[f64],
     ) -> Result<Self, ContactError> {
         check(rubber, speed, period, heights)?;
-        let points = heights.len();
-        let mean = heights.iter().sum::<f64>() / points as f64;
-        let centred: Vec<f64> = heights.iter().map(|z| z - mean).collect();
+        let centred = remove_mean(heights);
         let extremes = centred.iter().fold((0.0_f64, 0.0_f64), |(a, b), z| (a.min(*z), b.max(*z)));
         let mut planner = RealFftPlanner::new();
         let mut grids = vec![Grid::new(&mut planner, rubber, speed, period, centred)];
@@ -238,6 +236,14 @@ fn check(rubber: &Rubber, speed: f64, period: f64, heights: &[f64]) -> Result<()
         Some(index) => Err(ContactError::BadHeight { index, value: heights[index] }),
         None => Ok(()),
     }
+}
+
+/// Heights about their mean. One height is taken off first, so that a flat profile becomes zero
+/// and not the round-off of its mean.
+fn remove_mean(heights: &[f64]) -> Vec<f64> {
+    let first = heights[0];
+    let mean = heights.iter().map(|z| z - first).sum::<f64>() / heights.len() as f64;
+    heights.iter().map(|z| z - first - mean).collect()
 }
 
 /// The profile on half as many points: every second one of an even grid, between two points of an

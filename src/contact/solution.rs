@@ -36,9 +36,9 @@ pub struct ContactSolution {
 /// heights, since their round-off keeps a gap from being any smaller than 1e-15 of them.
 pub(super) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
     let root_mean_square = |x: &[f64]| euclidean_norm(x) / (x.len() as f64).sqrt();
-    let scale = root_mean_square(displacement).max(1e-4 * root_mean_square(heights));
-    // A flat profile has neither displacement nor residual.
-    if scale > 0.0 { scale } else { 1.0 }
+    let height = root_mean_square(heights);
+    // On a flat profile displacements are round-off.
+    if height > 0.0 { root_mean_square(displacement).max(1e-4 * height) } else { 1.0 }
 }
 
 /// Fields of a contact before they are judged.
