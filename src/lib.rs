@@ -9,6 +9,7 @@
 //! | [`artifact`] | tables (Arrow), arrays (HDF5), manifests, digests and the folder of a run |
 //! | [`cli`] | arguments, printing, exit codes |
 //! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
+//! | [`reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`scans`] | readers of instrument files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
 //!
@@ -24,6 +25,7 @@ pub mod contact;
 pub mod numerics;
 pub mod pipeline;
 pub mod recipe;
+pub mod reference;
 pub mod report;
 pub mod rubber;
 pub mod scans;

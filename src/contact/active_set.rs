@@ -7,6 +7,7 @@
 
 use super::half_space::HalfSpace;
 use super::preconditioner::Preconditioner;
+use super::solution::displacement_scale;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
 /// How accurate a grid has to be.
@@ -52,8 +53,13 @@ const TIGHT: f64 = 1e-8;
 /// Active-set iterations with loose, then with tight linear solves.
 const LOOSE_ITERATIONS: usize = 25;
 const MOST_ITERATIONS: usize = 600;
+/// Iteration after which the set grows afresh from the highest point: the start was too far off,
+/// for example because the coarser grids miss a peak of one point that carries the load.
+const RESTART_ITERATION: usize = 60;
 /// Iterations before a growing number of changes is damped.
 const UNDAMPED_ITERATIONS: usize = 3;
+/// Share of a run of wrong points that changes sides at least.
+const LEAST_DAMPING: f64 = 0.1;
 /// Iterations after which a coarse grid has done its duty, converged or not.
 const START_ITERATIONS: usize = 40;
 const MOST_KRYLOV_ITERATIONS: usize = 120;
@@ -101,12 +107,16 @@ impl Contact<'_> {
             tight = changes == 0 || iteration > LOOSE_ITERATIONS;
             if iteration > UNDAMPED_ITERATIONS {
                 let grows = changes >= previous;
-                damping = if grows { 0.5 * damping } else { (1.5 * damping).min(1.0) };
+                damping = if grows {
+                    (0.5 * damping).max(LEAST_DAMPING)
+                } else {
+                    (1.5 * damping).min(1.0)
+                };
             }
             previous = changes;
             set = exchange(&set, &wrong, damping, self.heights.len());
-            if set.is_empty() {
-                set.push(self.highest_point());
+            if set.is_empty() || iteration == RESTART_ITERATION {
+                set = vec![self.highest_point()];
             }
             self.keep_pressure_on(&set);
         }
@@ -156,7 +166,7 @@ impl Contact<'_> {
         report.iterations
     }
 
-    /// Largest separation on the set over the root mean square displacement.
+    /// Largest separation on the set over the scale of displacements.
     fn residual(&self, set: &[u32]) -> f64 {
         let scale = self.displacement_scale();
         let largest =
@@ -169,10 +179,7 @@ impl Contact<'_> {
     }
 
     fn displacement_scale(&self) -> f64 {
-        let n = self.displacement.len() as f64;
-        let rms = euclidean_norm(&self.displacement) / n.sqrt();
-        // A flat profile has no displacement and no residual either.
-        if rms > 0.0 { rms } else { 1.0 }
+        displacement_scale(&self.displacement, self.heights)
     }
 
     fn violations(&self, set: &[u32], goal: Goal) -> Violations {

@@ -1,1 +1,161 @@
 //! The pressure for a wanted contact area.
+
+use super::{ContactError, ContactSolution, SlidingContact};
+
+/// Most contacts solved in one search; the secant needs four to eight.
+const MOST_SOLVES: usize = 60;
+
+/// Bracket in `ln p` below which two pressures are the same.
+const SAME_PRESSURE: f64 = 1e-13;
+
+/// One end of the bracket: logarithms of the pressure and of the area over the wanted one.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    log_pressure: f64,
+    error: f64,
+}
+
+impl SlidingContact {
+    /// The contact at the pressure that gives the contact area `fraction`, to a relative
+    /// `tolerance` of the area. For the fraction 1 it is the smallest pressure of full contact.
+    ///
+    /// The area grows about like a power of the pressure, so the search is a secant in logarithms
+    /// inside a bracket (Anderson & Björck 1973, doi:10.1007/BF01951936).
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] for a fraction outside `(0, 1]` or a tolerance outside
+    /// `(0, 1)`; [`ContactError::AreaNotReached`] with the nearest area if no pressure gives the
+    /// wanted one: a flat profile, or a contact too small for the grid;
+    /// [`ContactError::NotConverged`] as in [`Self::solve`].
+    pub fn solve_for_area(
+        &mut self,
+        fraction: f64,
+        tolerance: f64,
+    ) -> Result<ContactSolution, ContactError> {
+        check(fraction, tolerance)?;
+        let full = self.smallest_full_contact_pressure();
+        if full <= 0.0 {
+            let points = self.points();
+            return Err(ContactError::AreaNotReached {
+                wanted: fraction,
+                found: 1.0,
+                pressure: 0.0,
+                points,
+            });
+        }
+        if fraction == 1.0 {
+            return self.solve(full);
+        }
+        let upper = End { log_pressure: full.ln(), error: -fraction.ln() };
+        Search { contact: self, fraction, tolerance, best: None }.run(upper)
+    }
+
+    /// Smallest mean pressure in Pa at which the pressure is nowhere a tension in full contact;
+    /// zero for a flat profile.
+    pub fn smallest_full_contact_pressure(&mut self) -> f64 {
+        -self.full_contact_pressure().into_iter().fold(0.0, f64::min)
+    }
+}
+
+struct Search<'a> {
+    contact: &'a mut SlidingContact,
+    fraction: f64,
+    tolerance: f64,
+    best: Option<ContactSolution>,
+}
+
+impl Search<'_> {
+    fn run(mut self, mut upper: End) -> Result<ContactSolution, ContactError> {
+        // As an elastic sine would have it (Westergaard 1939).
+        let elastic = (0.5 * std::f64::consts::PI * self.fraction).sin().powi(2);
+        let mut guess = upper.log_pressure + elastic.ln();
+        let mut lower: Option<End> = None;
+        let mut previous_error = 0.0;
+        for _ in 0..MOST_SOLVES {
+            let error = self.error_at(guess)?;
+            let new = End { log_pressure: guess, error };
+            if error.abs() <= self.tolerance.ln_1p() {
+                break;
+            }
+            guess = match (&mut lower, error > 0.0) {
+                (None, true) => {
+                    upper = new;
+                    // Hertz: p ~ area²; a little further, to land below.
+                    guess - 2.2 * error - 0.1
+                }
+                (None, false) => {
+                    lower = Some(new);
+                    // Up by the same rule: the known upper end may be far away.
+                    (guess - 2.2 * error + 0.1).min(0.5 * (guess + upper.log_pressure))
+                }
+                (Some(low), _) => {
+                    narrow(low, &mut upper, new, previous_error * error > 0.0);
+                    if upper.log_pressure - low.log_pressure < SAME_PRESSURE {
+                        break;
+                    }
+                    secant(low, &upper)
+                }
+            };
+            previous_error = error;
+        }
+        self.finish()
+    }
+
+    /// Logarithm of the area at a pressure over the wanted one; keeps the nearest solution.
+    fn error_at(&mut self, log_pressure: f64) -> Result<f64, ContactError> {
+        let fraction = self.fraction;
+        let error_of =
+            |solution: &ContactSolution| (solution.contact_area_fraction / fraction).ln();
+        let solution = self.contact.solve(log_pressure.exp())?;
+        let error = error_of(&solution);
+        let nearest = self.best.as_ref().map(|best| error_of(best).abs());
+        if nearest.is_none_or(|nearest| error.abs() < nearest) {
+            self.best = Some(solution);
+        }
+        Ok(error)
+    }
+
+    fn finish(self) -> Result<ContactSolution, ContactError> {
+        let best = self.best.expect("at least one contact has been solved");
+        let found = best.contact_area_fraction;
+        if (found / self.fraction - 1.0).abs() <= self.tolerance {
+            return Ok(best);
+        }
+        Err(ContactError::AreaNotReached {
+            wanted: self.fraction,
+            found,
+            pressure: best.mean_pressure,
+            points: self.contact.points(),
+        })
+    }
+}
+
+/// Replaces the end of the bracket on the side of `new`. Where this happens twice running the error
+/// of the other end is scaled down, so that it does not stay for ever.
+fn narrow(lower: &mut End, upper: &mut End, new: End, again: bool) {
+    let (near, far) = if new.error > 0.0 { (upper, lower) } else { (lower, upper) };
+    if again {
+        let scale = 1.0 - new.error / near.error;
+        far.error *= if scale > 0.0 { scale } else { 0.5 };
+    }
+    *near = new;
+}
+
+/// Where the line through the ends vanishes, kept off the ends by a thousandth of the bracket.
+fn secant(lower: &End, upper: &End) -> f64 {
+    let share = lower.error / (lower.error - upper.error);
+    let share = if share.is_finite() { share.clamp(1e-3, 1.0 - 1e-3) } else { 0.5 };
+    lower.log_pressure + share * (upper.log_pressure - lower.log_pressure)
+}
+
+fn check(fraction: f64, tolerance: f64) -> Result<(), ContactError> {
+    let out_of_range =
+        |quantity, value, range| Err(ContactError::OutOfRange { quantity, value, range });
+    if !(fraction > 0.0 && fraction <= 1.0) {
+        return out_of_range("the contact area fraction", fraction, "above 0 and at most 1");
+    }
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        return out_of_range("the tolerance of the contact area", tolerance, "between 0 and 1");
+    }
+    Ok(())
+}

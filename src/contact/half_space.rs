@@ -49,8 +49,12 @@ impl HalfSpace {
         let forward = planner.plan_fft_forward(points);
         let backward = planner.plan_fft_inverse(points);
         let bins = points / 2 + 1;
-        let compliance: Vec<_> =
-            (0..bins).map(|k| compliance(rubber, speed, period, points, k)).collect();
+        let compliance: Vec<_> = (0..bins)
+            .map(|k| {
+                let wavenumber = TAU * k as f64 / period;
+                compliance(rubber, speed, wavenumber, 2.0 * k as f64 / points as f64)
+            })
+            .collect();
         let stiffness = compliance
             .iter()
             .map(|c| if *c == Complex64::ZERO { Complex64::ZERO } else { c.inv() })
@@ -196,18 +200,18 @@ impl HalfSpace {
     }
 }
 
-/// Compliance of the k-th wave in m/Pa.
-fn compliance(rubber: &Rubber, speed: f64, period: f64, points: usize, k: usize) -> Complex64 {
-    if k == 0 {
+/// Compliance in m/Pa of the wave with `wavenumber` in rad/m, which is the `relative` part of the
+/// highest wavenumber of the grid.
+pub(super) fn compliance(rubber: &Rubber, speed: f64, wavenumber: f64, relative: f64) -> Complex64 {
+    if wavenumber == 0.0 {
         return Complex64::ZERO;
     }
-    let q = TAU * k as f64 / period;
-    let (modulus, phase) = (2.0 / (q * rubber.reduced_modulus(q * speed))).to_polar();
-    let relative = 2.0 * k as f64 / points as f64;
-    let taper = (FRAC_PI_2 * relative.powi(2)).cos().powi(2);
-    if 2 * k == points {
+    let untapered = 2.0 / (wavenumber * rubber.reduced_modulus(wavenumber * speed));
+    let (modulus, phase) = untapered.to_polar();
+    if relative == 1.0 {
         return Complex64::new(modulus, 0.0);
     }
+    let taper = (FRAC_PI_2 * relative.powi(2)).cos().powi(2);
     Complex64::from_polar(modulus, phase * taper)
 }
 

@@ -38,13 +38,14 @@ impl Preconditioner {
         let islands = Islands::of(set, points, MOST_ISLANDS);
         let mut shape = vec![0.0; set.len()];
         space.pressure_on(set, &vec![1.0; set.len()], &mut shape);
-        // The gaps make the edges of an island stiff, so the sum is positive; should round-off or
-        // merging break that, a uniform pressure serves.
+        // The gaps make the edges of an island stiff, so the sum is positive. Without a gap it is
+        // round-off, and merging may break it: there a uniform pressure serves.
+        let full = set.len() == points;
         let sums = islands.sums(shape.iter().copied());
         let counts = islands.sums(std::iter::repeat_n(1.0, set.len()));
         for (s, id) in shape.iter_mut().zip(&islands.of_point) {
             let id = *id as usize;
-            *s = if sums[id] > 0.0 { *s / sums[id] } else { 1.0 / counts[id] };
+            *s = if sums[id] > 0.0 && !full { *s / sums[id] } else { 1.0 / counts[id] };
         }
         let coarse = (islands.count > 1).then(|| Coarse::new(space, kernel, set, &islands, &shape));
         Self { islands, shape, coarse }

@@ -1,7 +1,7 @@
 //! The sliding contact on nested grids.
 
 use super::active_set::{Contact, Goal};
-use super::edges::overhang;
+use super::edges::EdgeReader;
 use super::error::ContactError;
 use super::half_space::HalfSpace;
 use super::solution::{ContactSolution, Fields};
@@ -55,6 +55,7 @@ struct Grid {
     space: HalfSpace,
     heights: Vec<f64>,
     kernel: Vec<f64>,
+    edges: EdgeReader,
 }
 
 impl SlidingContact {
@@ -71,9 +72,7 @@ impl SlidingContact {
         heights: &[f64],
     ) -> Result<Self, ContactError> {
         check(rubber, speed, period, heights)?;
-        let points = heights.len();
-        let mean = heights.iter().sum::<f64>() / points as f64;
-        let centred: Vec<f64> = heights.iter().map(|z| z - mean).collect();
+        let centred = remove_mean(heights);
         let extremes = centred.iter().fold((0.0_f64, 0.0_f64), |(a, b), z| (a.min(*z), b.max(*z)));
         let mut planner = RealFftPlanner::new();
         let mut grids = vec![Grid::new(&mut planner, rubber, speed, period, centred)];
@@ -130,6 +129,7 @@ impl SlidingContact {
             pressure: pressure.iter().map(|t| mean_pressure + t).collect(),
             heights: &finest.heights,
             slopes: &self.slopes,
+            edges: &finest.edges,
         };
         let mut solution = fields.evaluate(&mut finest.space);
         // A pressure that just vanishes somewhere leaves no gap there either.
@@ -149,7 +149,9 @@ impl SlidingContact {
 
     fn partial_contact(&mut self, mean_pressure: f64) -> Result<ContactSolution, ContactError> {
         let points = self.points();
-        let mut pressure = vec![mean_pressure; self.grids[0].heights.len()];
+        let coarsest = &self.grids[0];
+        let mut pressure = vec![mean_pressure; coarsest.heights.len()];
+        let mut coarser_edges = coarsest.edges.clone();
         let mut applications = 0.0;
         for grid in &mut self.grids {
             let finest = grid.heights.len() == points;
@@ -157,7 +159,7 @@ impl SlidingContact {
                 if finest { Goal::Solution { tolerance: INNER_TOLERANCE } } else { Goal::Start };
             let mut contact = Contact {
                 displacement: vec![0.0; grid.heights.len()],
-                pressure: refine(&pressure, grid.heights.len()),
+                pressure: refine(&pressure, &coarser_edges, grid.heights.len()),
                 space: &mut grid.space,
                 heights: &grid.heights,
                 kernel: &grid.kernel,
@@ -168,12 +170,15 @@ impl SlidingContact {
             applications += (outcome.krylov_iterations * grid.heights.len()) as f64 / points as f64;
             if !finest {
                 pressure = contact.pressure;
+                coarser_edges.clone_from(&grid.edges);
                 continue;
             }
             let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
             let heights = &grid.heights;
             let slopes = &self.slopes;
-            let fields = Fields { mean_pressure, mean_separation, pressure, heights, slopes };
+            let edges = &grid.edges;
+            let fields =
+                Fields { mean_pressure, mean_separation, pressure, heights, slopes, edges };
             let mut solution = fields.evaluate(&mut grid.space);
             solution.iterations = outcome.iterations;
             solution.operator_applications = applications;
@@ -207,7 +212,8 @@ impl Grid {
         unit[0] = 1.0;
         let mut kernel = vec![0.0; points];
         space.displacement(&unit, &mut kernel);
-        Self { space, heights, kernel }
+        let edges = EdgeReader::new(rubber, speed, period / points as f64);
+        Self { space, heights, kernel, edges }
     }
 }
 
@@ -232,6 +238,14 @@ fn check(rubber: &Rubber, speed: f64, period: f64, heights: &[f64]) -> Result<()
     }
 }
 
+/// Heights about their mean. One height is taken off first, so that a flat profile becomes zero
+/// and not the round-off of its mean.
+fn remove_mean(heights: &[f64]) -> Vec<f64> {
+    let first = heights[0];
+    let mean = heights.iter().map(|z| z - first).sum::<f64>() / heights.len() as f64;
+    heights.iter().map(|z| z - first - mean).collect()
+}
+
 /// The profile on half as many points: every second one of an even grid, between two points of an
 /// odd one.
 fn coarsen(heights: &[f64]) -> Vec<f64> {
@@ -240,7 +254,7 @@ fn coarsen(heights: &[f64]) -> Vec<f64> {
 
 /// The pressure on a finer grid of the same period, linear between points and without those new
 /// points that lie beyond the contact edge as read on the coarse grid.
-fn refine(pressure: &[f64], points: usize) -> Vec<f64> {
+fn refine(pressure: &[f64], edges: &EdgeReader, points: usize) -> Vec<f64> {
     let n = pressure.len();
     let mut fine = resample(pressure, points);
     if points == n {
@@ -252,8 +266,8 @@ fn refine(pressure: &[f64], points: usize) -> Vec<f64> {
         let from_left = position - left as f64;
         let at = |k: usize| pressure[k % n];
         let beyond = match (at(left) > 0.0, at(left + 1) > 0.0) {
-            (true, false) => from_left > overhang(at(left + n - 1), at(left)),
-            (false, true) => 1.0 - from_left > overhang(at(left + 2), at(left + 1)),
+            (true, false) => from_left > edges.overhang_after(pressure, left),
+            (false, true) => 1.0 - from_left > edges.overhang_before(pressure, (left + 1) % n),
             _ => false,
         };
         if beyond {

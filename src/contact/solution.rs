@@ -1,7 +1,8 @@
 //! A solved contact and what is read from it.
 
-use super::edges::contact_area_fraction;
+use super::edges::EdgeReader;
 use super::half_space::HalfSpace;
+use crate::numerics::krylov::euclidean_norm;
 
 /// The steady contact at one mean pressure.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +19,8 @@ pub struct ContactSolution {
     /// Mean separation in m: of the mean planes of rubber and profile.
     pub mean_separation: f64,
     /// Largest violation, relative: of `u = 0` in contact and `u >= 0` outside by the root mean
-    /// square displacement, of the load and `t >= 0` by the mean pressure.
+    /// square displacement (or 1e-4 of that of the heights, if that is more: the round-off of the
+    /// heights counts there), of the load and `t >= 0` by the mean pressure.
     pub residual: f64,
     /// Active-set iterations on the finest grid.
     pub iterations: usize,
@@ -30,6 +32,15 @@ pub struct ContactSolution {
     pub separation: Vec<f64>,
 }
 
+/// Root mean square displacement, the scale of violated gaps; not below 1e-4 of that of the
+/// heights, since their round-off keeps a gap from being any smaller than 1e-15 of them.
+pub(super) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
+    let root_mean_square = |x: &[f64]| euclidean_norm(x) / (x.len() as f64).sqrt();
+    let height = root_mean_square(heights);
+    // On a flat profile displacements are round-off.
+    if height > 0.0 { root_mean_square(displacement).max(1e-4 * height) } else { 1.0 }
+}
+
 /// Fields of a contact before they are judged.
 pub(super) struct Fields<'a> {
     pub mean_pressure: f64,
@@ -37,6 +48,7 @@ pub(super) struct Fields<'a> {
     pub pressure: Vec<f64>,
     pub heights: &'a [f64],
     pub slopes: &'a [f64],
+    pub edges: &'a EdgeReader,
 }
 
 impl Fields<'_> {
@@ -46,7 +58,6 @@ impl Fields<'_> {
         let n = self.pressure.len();
         let mut displacement = vec![0.0; n];
         space.displacement(&self.pressure, &mut displacement);
-        let displacement_rms = (displacement.iter().map(|w| w * w).sum::<f64>() / n as f64).sqrt();
         let separation: Vec<f64> = displacement
             .iter()
             .zip(self.heights)
@@ -55,7 +66,7 @@ impl Fields<'_> {
         let mean = self.pressure.iter().sum::<f64>() / n as f64;
         let traction =
             self.pressure.iter().zip(self.slopes).map(|(t, s)| t * s).sum::<f64>() / n as f64;
-        let scale = if displacement_rms > 0.0 { displacement_rms } else { 1.0 };
+        let scale = displacement_scale(&displacement, self.heights);
         let gap_violation = self
             .pressure
             .iter()
@@ -69,7 +80,11 @@ impl Fields<'_> {
             mean_pressure: self.mean_pressure,
             friction_coefficient: traction / mean,
             hysteretic_friction: space.hysteretic_traction(&self.pressure) / mean,
-            contact_area_fraction: contact_area_fraction(&self.pressure),
+            contact_area_fraction: self.edges.contact_area_fraction(
+                &self.pressure,
+                &displacement,
+                &separation,
+            ),
             mean_separation: self.mean_separation,
             residual: gap_violation.max(tension.max(load_error) / self.mean_pressure),
             iterations: 0,
