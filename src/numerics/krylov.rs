@@ -25,7 +25,7 @@ const EXHAUSTED: f64 = 1e-13;
 /// Minimises `|r - B y|` over the Krylov space of `B` and `r` (GMRES without restart, modified
 /// Gram-Schmidt; Saad & Schultz 1986, doi:10.1137/0907058) and returns `y` in place of `r`.
 ///
-/// `B` is meant to be a right-preconditioned operator close to the identity: the basis is kept
+/// `B` is meant to be a preconditioned operator close to the identity: the basis is kept
 /// whole, so memory is `(iterations + 1) * r.len()`.
 pub fn gmres(
     mut operator: impl FnMut(&[f64], &mut [f64]),

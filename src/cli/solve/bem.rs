@@ -7,7 +7,6 @@ use std::time::Instant;
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
-use super::area::solve_for_area;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{aligned, json, note, print, significant, write_file};
 use crate::cli::{CliError, values};
@@ -121,7 +120,7 @@ impl Bem {
         }
         let solution = match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => contact.solve(pressure_mpa * 1e6)?,
-            (None, Some(fraction)) => solve_for_area(&mut contact, fraction, AREA_TOLERANCE)?,
+            (None, Some(fraction)) => contact.solve_for_area(fraction, AREA_TOLERANCE)?,
             (None, None) => return Err(CliError::input("give --pressure or --area")),
         };
         let summary = Summary::new(&solution, start.elapsed().as_secs_f64());

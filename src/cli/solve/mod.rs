@@ -1,6 +1,5 @@
 //! `asperity solve`: a single contact problem.
 
-mod area;
 mod bem;
 mod profile_file;
 mod shape;
