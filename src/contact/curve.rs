@@ -65,7 +65,7 @@ pub enum CurveError<E> {
 /// points, one of which a target must keep to: friction is a curve with features of its own, and
 /// two wide-apart points say nothing of what is between them.
 const NEAR: f64 = 0.01;
-const NARROW: f64 = 0.25;
+const NARROW: f64 = 0.1;
 /// Solves that the search for the two ends may take each.
 const MOST_BRACKETING_SOLVES: usize = 24;
 /// Solves per target before the curve is given up as no curve.
