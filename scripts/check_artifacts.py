@@ -119,9 +119,11 @@ def check_run(run):
             stated = output["schema"], output["schema_version"]
             demand((schema, version) == stated, f"{path} is {schema} {version}, not {stated}")
             print(f"{path}: {schema} version {version}, {shape}")
-    check_solves(run / "bem/solves.arrow", frames["asperity.bem.solves"])
-    check_curves(run / "bem/curves.arrow", frames["asperity.bem.curves"])
-    friction, curves = frames["asperity.tables.friction"], frames["asperity.bem.curves"]
+    needed = ["asperity.bem.solves", "asperity.bem.curves", "asperity.tables.friction"]
+    demand(set(needed) <= frames.keys(), f"{run} is unfinished: it has not all of {needed}")
+    solves, curves, friction = (frames[schema] for schema in needed)
+    check_solves(run / "bem/solves.arrow", solves)
+    check_curves(run / "bem/curves.arrow", curves)
     check_friction(run / "tables/friction.arrow", friction, curves)
     print(f"{run}: all artifacts are sound")
 
