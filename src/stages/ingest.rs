@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -187,7 +187,8 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let done = std::sync::atomic::AtomicU64::new(0);
-    let read: Vec<(Vec<LineScan>, ConditioningReport)> = files
+    // Collected first and judged then: a parallel search for an error finds any.
+    let read: Vec<Result<(Vec<LineScan>, ConditioningReport), StageError>> = files
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
@@ -201,8 +202,10 @@ pub fn run(
             (context.progress)(count, files.len() as u64);
             Ok(conditioned)
         })
-        .collect::<Result<_, StageError>>()?;
+        .collect();
+    let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
     check_equal_grids(read.iter().flat_map(|(windows, _)| windows))?;
+    share_spacing(&mut read.iter_mut().flat_map(|(windows, _)| windows).collect::<Vec<_>>());
     let datasets: Vec<ArrayDataset> = files
         .iter()
         .zip(&read)
@@ -240,6 +243,13 @@ fn check_equal_grids<'a>(
             other_spacing_um: other.spacing * 1e6,
         }),
     }
+}
+
+/// Gives all windows the mean of their spacings, so that lags and frequencies are the same numbers
+/// in all of them.
+fn share_spacing(windows: &mut [&mut LineScan]) {
+    let mean = windows.iter().map(|window| window.spacing).sum::<f64>() / windows.len() as f64;
+    windows.iter_mut().for_each(|window| window.spacing = mean);
 }
 
 fn dataset(window: &LineScan, file: &ScanFile) -> ArrayDataset {
