@@ -4,6 +4,7 @@ use super::{Context, StageError, schema_of};
 use crate::artifact::{
     ArrayDataset, Attribute, Digest, Input, Metadata, Row, RunView, SchemaVersion,
 };
+use crate::recipe::Violation;
 use crate::scans::{TextFormat, parse_text};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, condition};
 use rayon::prelude::*;
@@ -26,6 +27,13 @@ pub struct Ingest {
     /// How the scans are brought to equal spacing and freed of faults and form.
     #[serde(default)]
     pub conditioning: Conditioning,
+}
+
+impl Ingest {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        self.text.validate()?;
+        Ok(self.conditioning.validate()?)
+    }
 }
 
 /// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
