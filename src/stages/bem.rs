@@ -62,12 +62,16 @@ fn default_contact_points() -> u32 {
     100
 }
 
+/// Speeds that a recipe may ask for: from below any creep to above any vehicle, and well inside the
+/// range of floating-point numbers.
+const SPEEDS_MM_S: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
 impl Bem {
     pub(crate) fn check(&self) -> Result<(), Violation> {
         let speeds = &self.speeds_mm_s;
-        let positive = speeds.iter().all(|v| *v > 0.0 && v.is_finite());
-        let valid = !speeds.is_empty() && positive && no_repeats(speeds);
-        demand(valid, "bem.speeds_mm_s", speeds, "positive speeds, each once")?;
+        let possible = speeds.iter().all(|v| SPEEDS_MM_S.contains(v));
+        let valid = !speeds.is_empty() && possible && no_repeats(speeds);
+        demand(valid, "bem.speeds_mm_s", speeds, "speeds from 1e-9 to 1e9, each once")?;
         for (key, areas) in [
             ("bem.area_fractions", &self.area_fractions),
             ("bem.field_area_fractions", &self.field_area_fractions),
@@ -214,7 +218,7 @@ pub fn schemas() -> Vec<SchemaVersion> {
 /// not depend on the number of threads.
 ///
 /// # Errors
-/// [`StageError::Contact`] for the first curve, in their order, that cannot be had;
+/// [`StageError::Contact`] for a curve that cannot be had, the one that failed first in time;
 /// [`StageError::Interrupted`]. Solves that are done are kept in the store.
 pub fn run(
     parameters: &Bem,
