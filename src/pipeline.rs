@@ -262,7 +262,7 @@ fn compute(
             let path = folder.path().join(SOLVES_FOLDER);
             if selection.force == Some(Stage::Bem) && path.exists() {
                 std::fs::remove_dir_all(&path)
-                    .map_err(|source| StageError::Io { path: path.clone(), source })?;
+                    .map_err(|source| StageError::RemoveSolves { path: path.clone(), source })?;
             }
             let store = SolveStore::open(path)?;
             bem::run(&recipe.bem, &plan.rubber, folder, &store, context)

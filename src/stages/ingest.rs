@@ -1,5 +1,6 @@
 //! ingest: from scan files to windows of equal spacing.
 
+use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
     ArrayDataset, Attribute, Digest, Input, Metadata, Row, RunView, SchemaVersion,
@@ -127,7 +128,8 @@ pub struct ScanFile {
 /// them.
 ///
 /// # Errors
-/// [`StageError::Io`], [`StageError::NoScans`], [`StageError::SameName`].
+/// [`StageError::ScanIo`], [`StageError::NoScans`], [`StageError::SameName`],
+/// [`StageError::ReservedName`].
 pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
     let mut files = Vec::new();
     for path in paths {
@@ -142,6 +144,10 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
             let (name, second) = (scan_name(path), path.clone());
             return Err(StageError::SameName { name, first, second });
         }
+        // Tables tell the windows from their average by this name.
+        if scan_name(path) == AVERAGE {
+            return Err(StageError::ReservedName { path: path.clone() });
+        }
     }
     files
         .into_par_iter()
@@ -153,7 +159,7 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
 }
 
 fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
-    let io = |source| StageError::Io { path: path.to_owned(), source };
+    let io = |source| StageError::ScanIo { path: path.to_owned(), source };
     if !std::fs::metadata(path).map_err(io)?.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -201,7 +207,7 @@ pub fn run(
         .map(|file| {
             context.check_interrupt()?;
             let bytes = std::fs::read(&file.path)
-                .map_err(|source| StageError::Io { path: file.path.clone(), source })?;
+                .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
             let name = file.path.display().to_string();
             let mut scan = parse_text(&name, &bytes, &ingest.text)?;
             scan.name.clone_from(&file.name);
