@@ -106,8 +106,9 @@ pub fn run(
     interrupted: &AtomicBool,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
-    let folder = RunFolder::open(out)?;
+    // First what can be wrong without leaving a folder behind.
     let plan = Plan::new(recipe)?;
+    let folder = RunFolder::open(out)?;
     for stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
         let identity = plan.identity(stage, &folder)?;
