@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[bem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// Revision of the contact solver: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 1;
+const SOLVER_REVISION: u32 = 2;
 
 /// The grid may be refined this many times for small contacts.
 const MOST_REFINEMENTS: u32 = 4;
