@@ -4,7 +4,10 @@ mod curve;
 
 use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, schema_of};
-use crate::artifact::{ArrayDataset, Metadata, Pending, Row, RunView, SchemaVersion, SolveStore};
+use crate::artifact::{
+    ArrayDataset, ArraysSchema, AttributeSchema, DatasetSchema, Metadata, Pending, Row, RunView,
+    SchemaVersion, SolveStore,
+};
 use crate::contact::CurveValue;
 use crate::recipe::{Violation, demand};
 use crate::rubber::{Rubber, read_rubber};
@@ -133,6 +136,7 @@ pub const FIELDS_FILE: &str = "fields.h5";
 pub const FIELDS_SCHEMA: &str = "asperity.bem.fields";
 /// Schema version of [`FIELDS_FILE`].
 pub const FIELDS_VERSION: u32 = 1;
+const FIELDS_DESCRIPTION: &str = "pressure and separation over one period of the profile";
 
 /// One solved contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -210,6 +214,42 @@ impl Row for CurveRow {
 pub fn schemas() -> Vec<SchemaVersion> {
     let fields = SchemaVersion { schema: FIELDS_SCHEMA.into(), version: FIELDS_VERSION };
     vec![schema_of::<SolveRow>(), schema_of::<CurveRow>(), fields]
+}
+
+/// What [`FIELDS_FILE`] holds.
+pub fn fields_schema() -> ArraysSchema {
+    let attribute = |name, description| AttributeSchema { name, kind: "f64", description };
+    let attributes = vec![
+        attribute("spacing_m", "distance between neighbouring points"),
+        attribute("mean_pressure_pa", "mean pressure of the solve"),
+        attribute("wanted_area_fraction", "contact area fraction that the recipe asks for"),
+        attribute("contact_area_fraction", "contact area fraction of the solve"),
+        attribute("friction_coefficient", "friction coefficient of the solve"),
+        attribute("mean_separation_m", "mean separation of the solve"),
+    ];
+    let dataset = |path, unit, description| DatasetSchema {
+        path,
+        unit,
+        description,
+        attributes: attributes.clone(),
+    };
+    ArraysSchema {
+        schema: FIELDS_SCHEMA,
+        version: FIELDS_VERSION,
+        description: FIELDS_DESCRIPTION,
+        datasets: vec![
+            dataset(
+                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",
+                "Pa",
+                "contact pressure, zero outside the contact",
+            ),
+            dataset(
+                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/separation",
+                "m",
+                "separation of rubber and profile, zero in the contact",
+            ),
+        ],
+    }
 }
 
 /// Solves the contacts that are not in the store and writes the results; returns warnings.
@@ -292,8 +332,8 @@ fn write(pending: &mut Pending, results: &[CurveResult]) -> Result<Vec<String>, 
     let fields: Vec<ArrayDataset> =
         results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
     if !fields.is_empty() {
-        let description = "pressure and separation over one period of the profile";
-        pending.write_arrays(FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, description, &fields)?;
+        let (schema, description) = (FIELDS_SCHEMA, FIELDS_DESCRIPTION);
+        pending.write_arrays(FIELDS_FILE, schema, FIELDS_VERSION, description, &fields)?;
     }
     Ok(Vec::new())
 }

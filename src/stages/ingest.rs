@@ -3,7 +3,8 @@
 use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
-    ArrayDataset, Attribute, Digest, Input, Metadata, Row, RunView, SchemaVersion,
+    ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Input, Metadata,
+    Row, RunView, SchemaVersion,
 };
 use crate::recipe::Violation;
 use crate::scans::{TextFormat, parse_text};
@@ -43,6 +44,8 @@ pub const SCANS_FILE: &str = "scans.h5";
 pub const SCANS_SCHEMA: &str = "asperity.ingest.scans";
 /// Schema version of [`SCANS_FILE`].
 pub const SCANS_VERSION: u32 = 1;
+const SCANS_DESCRIPTION: &str =
+    "line scans on equal spacing, form removed; NaN where a height is missing";
 /// What conditioning did to each scan file: `report.arrow`.
 pub const REPORT_FILE: &str = "report.arrow";
 /// What became of each window: `windows.arrow`.
@@ -114,7 +117,30 @@ pub fn schemas() -> Vec<SchemaVersion> {
     vec![scans, schema_of::<ScanReportRow>(), schema_of::<WindowRow>()]
 }
 
-/// A scan file with its content.
+/// What [`SCANS_FILE`] holds.
+pub fn scans_schema() -> ArraysSchema {
+    let attribute = |name, kind, description| AttributeSchema { name, kind, description };
+    ArraysSchema {
+        schema: SCANS_SCHEMA,
+        version: SCANS_VERSION,
+        description: SCANS_DESCRIPTION,
+        datasets: vec![DatasetSchema {
+            path: "{window}",
+            unit: "m",
+            description: "heights of a window, growing towards the rubber; the name is that of the \
+                          scan file, followed by a slash and a number where it was cut",
+            attributes: vec![
+                attribute("spacing_m", "f64", "distance between neighbouring points"),
+                attribute("origin_m", "f64", "position of the first point on the track"),
+                attribute("missing_fraction", "f64", "share of the points without a height"),
+                attribute("source", "string", "name of the scan file without its extension"),
+                attribute("source_digest", "string", "BLAKE3 digest of the scan file"),
+            ],
+        }],
+    }
+}
+
+/// A scan file with its digest.
 pub struct ScanFile {
     /// Where it is.
     pub path: PathBuf,
@@ -226,9 +252,8 @@ pub fn run(
         .flat_map(|(file, (windows, _))| windows.iter().map(|window| dataset(window, file)))
         .collect();
     let reports: Vec<&ConditioningReport> = read.iter().map(|(_, report)| report).collect();
-    let description = "line scans on equal spacing, form removed; NaN where a height is missing";
     let pending = &mut context.pending;
-    pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, description, &datasets)?;
+    pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, SCANS_DESCRIPTION, &datasets)?;
     let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
     pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
     let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
