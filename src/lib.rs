@@ -29,5 +29,6 @@ pub mod reference;
 pub mod report;
 pub mod rubber;
 pub mod scans;
+pub mod schemas;
 pub mod stages;
 pub mod surface;

@@ -16,6 +16,9 @@ use std::time::Instant;
 /// Folder of single solves within a run folder.
 const SOLVES_FOLDER: &str = "solves";
 
+/// Why a stage without any result is stale.
+const NOT_COMPUTED: &str = "not computed yet";
+
 /// Which stages to bring up to date.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Selection {
@@ -71,7 +74,7 @@ pub enum PipelineError {
     Artifact(#[from] ArtifactError),
     /// A stage before the selected one is not up to date.
     #[error(
-        "{selected} reads the results of {stage}, which is stale ({reason}); run without --only \
+        "{selected} needs the results of {stage}, which is stale ({reason}); run without --only \
          and --from, or with --from {stage}"
     )]
     StaleInput {
@@ -106,8 +109,9 @@ pub fn run(
     interrupted: &AtomicBool,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
-    let folder = RunFolder::open(out)?;
+    // First what can be wrong without leaving a folder behind.
     let plan = Plan::new(recipe)?;
+    let folder = RunFolder::open(out)?;
     for stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
         let identity = plan.identity(stage, &folder)?;
@@ -153,10 +157,13 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
     for stage in plan.stages() {
         let before = states.iter().find(|(_, state)| *state != State::Fresh);
         let state = match before {
-            Some((before, _)) if view.stage_manifest(stage.name())?.is_some() => {
-                State::Stale(vec![format!("{before} is stale")])
-            }
-            _ => state(stage, &plan.identity(stage, &view)?, &view)?,
+            // What a stage would read is not known before those it reads from are up to date.
+            Some((before, _)) => State::Stale(vec![match view.stage_manifest(stage.name()) {
+                Ok(Some(_)) => format!("{before} is stale"),
+                Ok(None) => NOT_COMPUTED.into(),
+                Err(error) => error.to_string(),
+            }]),
+            None => state(stage, &plan.identity(stage, &view)?, &view)?,
         };
         states.push((stage, state));
     }
@@ -262,7 +269,7 @@ fn compute(
             let path = folder.path().join(SOLVES_FOLDER);
             if selection.force == Some(Stage::Bem) && path.exists() {
                 std::fs::remove_dir_all(&path)
-                    .map_err(|source| StageError::Io { path: path.clone(), source })?;
+                    .map_err(|source| StageError::RemoveSolves { path: path.clone(), source })?;
             }
             let store = SolveStore::open(path)?;
             bem::run(&recipe.bem, &plan.rubber, folder, &store, context)
@@ -275,7 +282,7 @@ fn compute(
 fn state(stage: Stage, wanted: &Identity, view: &RunView) -> Result<State, ArtifactError> {
     let manifest = match view.stage_manifest(stage.name()) {
         Ok(Some(manifest)) => manifest,
-        Ok(None) => return Ok(State::Stale(vec!["not computed yet".into()])),
+        Ok(None) => return Ok(State::Stale(vec![NOT_COMPUTED.into()])),
         // A manifest that cannot be read is as good as none: the stage is computed again.
         Err(error) => return Ok(State::Stale(vec![error.to_string()])),
     };

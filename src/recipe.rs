@@ -1,9 +1,11 @@
 //! The recipe: a TOML file that says what a run does, with units in its keys.
 
+use crate::scans::ScanProblem;
 use crate::stages::{
     approximate::Approximate, bem::Bem, characterise::Characterise, ingest::Ingest,
     realise::Realise, tables::Tables,
 };
+use crate::surface::ConditioningError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -52,27 +54,34 @@ pub enum RecipeError {
         source: Box<toml::de::Error>,
     },
     /// A value out of its range, or two that contradict each other.
-    #[error("recipe {}: {key} = {value}: {demand}", path.display())]
+    #[error("recipe {}: {violation}", path.display())]
     Value {
         /// The recipe.
         path: PathBuf,
-        /// The key with its section.
+        /// The key, its value and what it must be.
+        violation: Violation,
+    },
+}
+
+/// A value of a recipe that does not hold.
+#[derive(Debug, thiserror::Error)]
+pub enum Violation {
+    /// In any other section than `[ingest]`.
+    #[error("{key} = {value}: {demand}")]
+    Demand {
+        /// The key with its section, such as `bem.speeds_mm_s`.
         key: &'static str,
-        /// Its value.
+        /// The value as text.
         value: String,
         /// What it must be.
         demand: &'static str,
     },
-}
-
-/// A value of a recipe that does not hold: key with section, value, demand.
-pub struct Violation {
-    /// The key with its section, such as `bem.speeds_mm_s`.
-    pub key: &'static str,
-    /// The value as text.
-    pub value: String,
-    /// What it must be.
-    pub demand: &'static str,
+    /// The description of the scan files.
+    #[error("[ingest.text]: {0}")]
+    Text(#[from] ScanProblem),
+    /// The conditioning of the scans.
+    #[error("[ingest.conditioning]: {0}")]
+    Conditioning(#[from] ConditioningError),
 }
 
 /// `Ok` where the demand holds, else the violation.
@@ -82,7 +91,7 @@ pub(crate) fn demand(
     value: impl std::fmt::Debug,
     demand: &'static str,
 ) -> Result<(), Violation> {
-    if holds { Ok(()) } else { Err(Violation { key, value: format!("{value:?}"), demand }) }
+    if holds { Ok(()) } else { Err(Violation::Demand { key, value: format!("{value:?}"), demand }) }
 }
 
 impl Recipe {
@@ -105,12 +114,9 @@ impl Recipe {
             path: path.to_owned(),
             source: Box::new(source),
         })?;
-        recipe.check().map_err(|violation| RecipeError::Value {
-            path: path.to_owned(),
-            key: violation.key,
-            value: violation.value,
-            demand: violation.demand,
-        })?;
+        recipe
+            .check()
+            .map_err(|violation| RecipeError::Value { path: path.to_owned(), violation })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
             *scans = folder.join(&*scans);
@@ -123,6 +129,7 @@ impl Recipe {
     }
 
     fn check(&self) -> Result<(), Violation> {
+        self.ingest.as_ref().map_or(Ok(()), Ingest::check)?;
         self.characterise.check()?;
         self.approximate.check()?;
         self.realise.check()?;

@@ -171,7 +171,10 @@ pub enum ArtifactError {
         reason: String,
     },
     /// A committed schema is not the one of the program.
-    #[error("{} is out of date: generate the schemas again and commit them", .path.display())]
+    #[error(
+        "{} is out of date: a table or array that others read has changed; raise its version, write the schemas with `ASPERITY_UPDATE_SCHEMAS=1 cargo test --release --test stages schemas` and commit them",
+        .path.display()
+    )]
     SchemaDrift {
         /// The committed file.
         path: PathBuf,

@@ -37,6 +37,7 @@ pub use digest::Digest;
 pub use error::ArtifactError;
 pub use frame::{data_frame, write_csv, write_parquet};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
+pub use schema::{ArraysSchema, AttributeSchema, DatasetSchema, arrays_schema};
 pub use schema::{check_or_write, table_schema};
 pub use solves::SolveStore;
 pub use store::{Pending, RunFolder, RunView};

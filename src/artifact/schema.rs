@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::columns::table_description;
@@ -20,6 +21,53 @@ pub fn table_schema<R: Row>() -> Result<Value, ArtifactError> {
         "description": table_description::<R>(),
         "columns": columns::<R>()?,
     }))
+}
+
+/// What every file of arrays of one kind holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ArraysSchema {
+    /// Schema name.
+    #[serde(rename = "title")]
+    pub schema: &'static str,
+    /// Schema version.
+    pub version: u32,
+    /// What the file holds; also in the file itself.
+    pub description: &'static str,
+    /// Kinds of datasets.
+    pub datasets: Vec<DatasetSchema>,
+}
+
+/// One kind of dataset in a file of arrays; its values are 64-bit floating-point numbers in one
+/// dimension.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DatasetSchema {
+    /// Path in the file with placeholders in braces, such as `{scan}/{window}`.
+    pub path: &'static str,
+    /// Unit of the values.
+    pub unit: &'static str,
+    /// What the values are.
+    pub description: &'static str,
+    /// Attributes besides `unit`; each dataset has all of them.
+    pub attributes: Vec<AttributeSchema>,
+}
+
+/// One attribute of a dataset.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AttributeSchema {
+    /// Its name, with the unit.
+    pub name: &'static str,
+    /// `f64` or `string`.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// What it says.
+    pub description: &'static str,
+}
+
+/// JSON document of a kind of file of arrays.
+pub fn arrays_schema(schema: &ArraysSchema) -> Value {
+    let mut document = json!(schema);
+    document["format"] = json!("HDF5 file of arrays");
+    document
 }
 
 /// Compares the file `dir/name.json` with `value`, or writes it if `update` is set.

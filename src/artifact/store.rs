@@ -213,10 +213,16 @@ fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
                 fs::rename(&path, run.join(stage)).map_err(ArtifactError::io("rename", &path))?;
             }
             None if !name.starts_with(PENDING_PREFIX) => {}
-            _ => fs::remove_dir_all(&path).map_err(ArtifactError::io("remove", &path))?,
+            _ => remove(&path)?,
         }
     }
     Ok(())
+}
+
+/// Removes a folder with all in it, or a file that stands where a folder should.
+fn remove(path: &Path) -> Result<(), ArtifactError> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    removed.map_err(ArtifactError::io("remove", path))
 }
 
 /// A result that is being written.
@@ -328,7 +334,7 @@ impl Pending<'_> {
         let _ = self.folder.keep();
         synchronise(run)?;
         if replaces {
-            fs::remove_dir_all(&aside).map_err(ArtifactError::io("remove", &aside))?;
+            remove(&aside)?;
         }
         Ok(())
     }

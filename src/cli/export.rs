@@ -66,6 +66,12 @@ impl Export {
     /// # Errors
     /// [`CliError`].
     pub(super) fn run(self) -> Result<(), CliError> {
+        if self.run.is_file() {
+            return Err(CliError::input(format!(
+                "{} is a file: give the folder of a run, such as runs/asphalt",
+                self.run.display()
+            )));
+        }
         let view = RunView::of(&self.run);
         let (rows, _) =
             view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;

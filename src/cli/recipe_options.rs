@@ -69,7 +69,8 @@ impl From<PipelineError> for CliError {
                 StageError::Scan(_)
                     | StageError::Conditioning(_)
                     | StageError::NoScans { .. }
-                    | StageError::Io { .. }
+                    | StageError::ScanIo { .. }
+                    | StageError::ReservedName { .. }
                     | StageError::SameName { .. }
                     | StageError::UnequalScans { .. }
                     | StageError::Parameter(_)

@@ -103,7 +103,12 @@ impl Run {
                 record(StageSummary { stage, computed: false, seconds: None, warnings: vec![] });
             }
         })
-        .inspect_err(|_| progress.finish())?;
+        .inspect_err(|error| {
+            progress.finish();
+            if error.is_interrupt() {
+                note(quiet, "what is done is kept: the same command continues");
+            }
+        })?;
         if self.json {
             let stages = summaries.into_inner().unwrap_or_default();
             return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);

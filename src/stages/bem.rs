@@ -4,7 +4,10 @@ mod curve;
 
 use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, schema_of};
-use crate::artifact::{ArrayDataset, Metadata, Pending, Row, RunView, SchemaVersion, SolveStore};
+use crate::artifact::{
+    ArrayDataset, ArraysSchema, AttributeSchema, DatasetSchema, Metadata, Pending, Row, RunView,
+    SchemaVersion, SolveStore,
+};
 use crate::contact::CurveValue;
 use crate::recipe::{Violation, demand};
 use crate::rubber::{Rubber, read_rubber};
@@ -17,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[bem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -62,12 +65,16 @@ fn default_contact_points() -> u32 {
     100
 }
 
+/// Speeds that a recipe may ask for: from below any creep to above any vehicle, and well inside the
+/// range of floating-point numbers.
+const SPEEDS_MM_S: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+
 impl Bem {
     pub(crate) fn check(&self) -> Result<(), Violation> {
         let speeds = &self.speeds_mm_s;
-        let positive = speeds.iter().all(|v| *v > 0.0 && v.is_finite());
-        let valid = !speeds.is_empty() && positive && no_repeats(speeds);
-        demand(valid, "bem.speeds_mm_s", speeds, "positive speeds, each once")?;
+        let possible = speeds.iter().all(|v| SPEEDS_MM_S.contains(v));
+        let valid = !speeds.is_empty() && possible && no_repeats(speeds);
+        demand(valid, "bem.speeds_mm_s", speeds, "speeds from 1e-9 to 1e9, each once")?;
         for (key, areas) in [
             ("bem.area_fractions", &self.area_fractions),
             ("bem.field_area_fractions", &self.field_area_fractions),
@@ -129,6 +136,7 @@ pub const FIELDS_FILE: &str = "fields.h5";
 pub const FIELDS_SCHEMA: &str = "asperity.bem.fields";
 /// Schema version of [`FIELDS_FILE`].
 pub const FIELDS_VERSION: u32 = 1;
+const FIELDS_DESCRIPTION: &str = "pressure and separation over one period of the profile";
 
 /// One solved contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -208,13 +216,49 @@ pub fn schemas() -> Vec<SchemaVersion> {
     vec![schema_of::<SolveRow>(), schema_of::<CurveRow>(), fields]
 }
 
+/// What [`FIELDS_FILE`] holds.
+pub fn fields_schema() -> ArraysSchema {
+    let attribute = |name, description| AttributeSchema { name, kind: "f64", description };
+    let attributes = vec![
+        attribute("spacing_m", "distance between neighbouring points"),
+        attribute("mean_pressure_pa", "mean pressure of the solve"),
+        attribute("wanted_area_fraction", "contact area fraction that the recipe asks for"),
+        attribute("contact_area_fraction", "contact area fraction of the solve"),
+        attribute("friction_coefficient", "friction coefficient of the solve"),
+        attribute("mean_separation_m", "mean separation of the solve"),
+    ];
+    let dataset = |path, unit, description| DatasetSchema {
+        path,
+        unit,
+        description,
+        attributes: attributes.clone(),
+    };
+    ArraysSchema {
+        schema: FIELDS_SCHEMA,
+        version: FIELDS_VERSION,
+        description: FIELDS_DESCRIPTION,
+        datasets: vec![
+            dataset(
+                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",
+                "Pa",
+                "contact pressure, zero outside the contact",
+            ),
+            dataset(
+                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/separation",
+                "m",
+                "separation of rubber and profile, zero in the contact",
+            ),
+        ],
+    }
+}
+
 /// Solves the contacts that are not in the store and writes the results; returns warnings.
 ///
 /// Realisations and speeds run side by side; each curve is computed by itself, so the numbers do
 /// not depend on the number of threads.
 ///
 /// # Errors
-/// [`StageError::Contact`] for the first curve, in their order, that cannot be had;
+/// [`StageError::Contact`] for a curve that cannot be had, the one that failed first in time;
 /// [`StageError::Interrupted`]. Solves that are done are kept in the store.
 pub fn run(
     parameters: &Bem,
@@ -288,8 +332,8 @@ fn write(pending: &mut Pending, results: &[CurveResult]) -> Result<Vec<String>, 
     let fields: Vec<ArrayDataset> =
         results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
     if !fields.is_empty() {
-        let description = "pressure and separation over one period of the profile";
-        pending.write_arrays(FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, description, &fields)?;
+        let (schema, description) = (FIELDS_SCHEMA, FIELDS_DESCRIPTION);
+        pending.write_arrays(FIELDS_FILE, schema, FIELDS_VERSION, description, &fields)?;
     }
     Ok(Vec::new())
 }

@@ -1,9 +1,12 @@
 //! ingest: from scan files to windows of equal spacing.
 
+use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
-    ArrayDataset, Attribute, Digest, Input, Metadata, Row, RunView, SchemaVersion,
+    ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Input, Metadata,
+    Row, RunView, SchemaVersion,
 };
+use crate::recipe::Violation;
 use crate::scans::{TextFormat, parse_text};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, condition};
 use rayon::prelude::*;
@@ -13,7 +16,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,12 +31,21 @@ pub struct Ingest {
     pub conditioning: Conditioning,
 }
 
+impl Ingest {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        self.text.validate()?;
+        Ok(self.conditioning.validate()?)
+    }
+}
+
 /// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
 pub const SCANS_FILE: &str = "scans.h5";
 /// Schema name of [`SCANS_FILE`].
 pub const SCANS_SCHEMA: &str = "asperity.ingest.scans";
 /// Schema version of [`SCANS_FILE`].
 pub const SCANS_VERSION: u32 = 1;
+const SCANS_DESCRIPTION: &str =
+    "line scans on equal spacing, form removed; NaN where a height is missing";
 /// What conditioning did to each scan file: `report.arrow`.
 pub const REPORT_FILE: &str = "report.arrow";
 /// What became of each window: `windows.arrow`.
@@ -105,7 +117,30 @@ pub fn schemas() -> Vec<SchemaVersion> {
     vec![scans, schema_of::<ScanReportRow>(), schema_of::<WindowRow>()]
 }
 
-/// A scan file with its content.
+/// What [`SCANS_FILE`] holds.
+pub fn scans_schema() -> ArraysSchema {
+    let attribute = |name, kind, description| AttributeSchema { name, kind, description };
+    ArraysSchema {
+        schema: SCANS_SCHEMA,
+        version: SCANS_VERSION,
+        description: SCANS_DESCRIPTION,
+        datasets: vec![DatasetSchema {
+            path: "{window}",
+            unit: "m",
+            description: "heights of a window, growing towards the rubber; the name is that of the \
+                          scan file, followed by a slash and a number where it was cut",
+            attributes: vec![
+                attribute("spacing_m", "f64", "distance between neighbouring points"),
+                attribute("origin_m", "f64", "position of the first point on the track"),
+                attribute("missing_fraction", "f64", "share of the points without a height"),
+                attribute("source", "string", "name of the scan file without its extension"),
+                attribute("source_digest", "string", "BLAKE3 digest of the scan file"),
+            ],
+        }],
+    }
+}
+
+/// A scan file with its digest.
 pub struct ScanFile {
     /// Where it is.
     pub path: PathBuf,
@@ -119,7 +154,8 @@ pub struct ScanFile {
 /// them.
 ///
 /// # Errors
-/// [`StageError::Io`], [`StageError::NoScans`], [`StageError::SameName`].
+/// [`StageError::ScanIo`], [`StageError::NoScans`], [`StageError::SameName`],
+/// [`StageError::ReservedName`].
 pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
     let mut files = Vec::new();
     for path in paths {
@@ -134,6 +170,10 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
             let (name, second) = (scan_name(path), path.clone());
             return Err(StageError::SameName { name, first, second });
         }
+        // Tables tell the windows from their average by this name.
+        if scan_name(path) == AVERAGE {
+            return Err(StageError::ReservedName { path: path.clone() });
+        }
     }
     files
         .into_par_iter()
@@ -145,7 +185,7 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
 }
 
 fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
-    let io = |source| StageError::Io { path: path.to_owned(), source };
+    let io = |source| StageError::ScanIo { path: path.to_owned(), source };
     if !std::fs::metadata(path).map_err(io)?.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -187,12 +227,13 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let done = std::sync::atomic::AtomicU64::new(0);
-    let read: Vec<(Vec<LineScan>, ConditioningReport)> = files
+    // Collected first and judged then: a parallel search for an error finds any.
+    let read: Vec<Result<(Vec<LineScan>, ConditioningReport), StageError>> = files
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
             let bytes = std::fs::read(&file.path)
-                .map_err(|source| StageError::Io { path: file.path.clone(), source })?;
+                .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
             let name = file.path.display().to_string();
             let mut scan = parse_text(&name, &bytes, &ingest.text)?;
             scan.name.clone_from(&file.name);
@@ -201,17 +242,18 @@ pub fn run(
             (context.progress)(count, files.len() as u64);
             Ok(conditioned)
         })
-        .collect::<Result<_, StageError>>()?;
+        .collect();
+    let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
     check_equal_grids(read.iter().flat_map(|(windows, _)| windows))?;
+    share_spacing(&mut read.iter_mut().flat_map(|(windows, _)| windows).collect::<Vec<_>>());
     let datasets: Vec<ArrayDataset> = files
         .iter()
         .zip(&read)
         .flat_map(|(file, (windows, _))| windows.iter().map(|window| dataset(window, file)))
         .collect();
     let reports: Vec<&ConditioningReport> = read.iter().map(|(_, report)| report).collect();
-    let description = "line scans on equal spacing, form removed; NaN where a height is missing";
     let pending = &mut context.pending;
-    pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, description, &datasets)?;
+    pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, SCANS_DESCRIPTION, &datasets)?;
     let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
     pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
     let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
@@ -240,6 +282,13 @@ fn check_equal_grids<'a>(
             other_spacing_um: other.spacing * 1e6,
         }),
     }
+}
+
+/// Gives all windows the mean of their spacings, so that lags and frequencies are the same numbers
+/// in all of them.
+fn share_spacing(windows: &mut [&mut LineScan]) {
+    let mean = windows.iter().map(|window| window.spacing).sum::<f64>() / windows.len() as f64;
+    windows.iter_mut().for_each(|window| window.spacing = mean);
 }
 
 fn dataset(window: &LineScan, file: &ScanFile) -> ArrayDataset {

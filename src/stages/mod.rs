@@ -113,18 +113,32 @@ pub enum StageError {
     #[error(transparent)]
     Conditioning(#[from] crate::surface::ConditioningError),
     /// No scan file was found.
-    #[error("no scan files in {}: give files or folders with files", paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", "))]
+    #[error("no scan files in [{}]: give files or folders with files (ingest.scans or --scans)", paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", "))]
     NoScans {
         /// Where was looked.
         paths: Vec<PathBuf>,
     },
-    /// A path of the recipe cannot be read.
-    #[error("{}: {source}", path.display())]
-    Io {
+    /// A scan file or a folder of scans cannot be read.
+    #[error("cannot read the scans {}: {source}; check ingest.scans, or give others with --scans", path.display())]
+    ScanIo {
         /// The path.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
+    },
+    /// The stored solves cannot be removed.
+    #[error("cannot remove {}: {source}", path.display())]
+    RemoveSolves {
+        /// Their folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A scan named as the average over the scans is.
+    #[error("{}: `average` stands for the average over all scans in the tables; rename the file", path.display())]
+    ReservedName {
+        /// The file.
+        path: PathBuf,
     },
     /// Two scan files of the same name, which could not be told apart.
     #[error("two scans are named {name}: {} and {}; rename one of them", first.display(), second.display())]
@@ -138,7 +152,7 @@ pub enum StageError {
     },
     /// Windows of different spacing or length cannot be averaged.
     #[error(
-        "{scan} has {points} points every {spacing_um} µm, {other} has {other_points} every {other_spacing_um} µm: scans of one run must have the same spacing and length; set ingest.conditioning.window_length_mm and lateral_resolution_um, or run them apart"
+        "{scan} has {points} points every {spacing_um:.6} µm, {other} has {other_points} every {other_spacing_um:.6} µm: scans of one run must have the same spacing and length; set ingest.conditioning.window_length_mm and lateral_resolution_um, or run them apart"
     )]
     UnequalScans {
         /// A window.

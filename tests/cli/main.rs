@@ -1,5 +1,9 @@
 //! The binary as a user meets it: output, exit codes, files.
 
+#[path = "../common/mod.rs"]
+mod common;
+
+mod campaign;
 mod inspect;
 mod solve;
 mod synth;

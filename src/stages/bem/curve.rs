@@ -3,7 +3,8 @@
 use super::{Bem, SolveRow};
 use crate::artifact::{ArrayDataset, Attribute, Digest, SolveStore};
 use crate::contact::curve::{CurveError, friction_curve};
-use crate::contact::{ContactSolution, CurvePoint, CurveValue, SlidingContact};
+use crate::contact::sliding::POINTS_RANGE;
+use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
 use crate::rubber::Rubber;
 use crate::stages::SolveError;
 use crate::stages::realise::Surface;
@@ -16,7 +17,7 @@ use std::time::Instant;
 
 /// Revision of the contact solver: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 1;
+const SOLVER_REVISION: u32 = 2;
 
 /// The grid may be refined this many times for small contacts.
 const MOST_REFINEMENTS: u32 = 4;
@@ -173,6 +174,16 @@ impl<'a> Curve<'a> {
         match self.contacts.entry(points) {
             Entry::Occupied(contact) => Ok(contact.into_mut()),
             Entry::Vacant(place) => {
+                // Checked before the heights are sampled: they might not fit into the memory.
+                if !POINTS_RANGE.contains(&points) {
+                    return Err(ContactError::OutOfRange {
+                        quantity: "the number of grid points \
+                                   (bem.points_per_shortest_wavelength for each shortest wave of a period)",
+                        value: points as f64,
+                        range: "8 to 16777216",
+                    }
+                    .into());
+                }
                 let heights = wave::sample(&self.surface.profile, self.period, points);
                 let speed = self.speed_mm_s / 1e3;
                 Ok(place.insert(SlidingContact::new(self.rubber, speed, self.period, &heights)?))

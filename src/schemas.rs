@@ -1,0 +1,45 @@
+//! Everything that other programs may read or write, as JSON documents: the tables, the arrays,
+//! the manifest and the recipe. The folder `schemas` holds them; a test compares.
+
+use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
+use crate::recipe::Recipe;
+use crate::stages::{approximate, bem, characterise, ingest, realise, tables};
+use schemars::schema_for;
+use serde_json::Value;
+
+/// Name, which is that of the file without `.json`, and document of each kind.
+///
+/// # Errors
+/// [`ArtifactError::RowType`] for a row type that is no table: a mistake in the program.
+pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
+    let manifest = format!("{}.v{}", Manifest::SCHEMA, Manifest::VERSION);
+    Ok(vec![
+        ("asperity.recipe".into(), schema_for!(Recipe).to_value()),
+        (manifest, schema_for!(Manifest).to_value()),
+        arrays(&ingest::scans_schema()),
+        table::<ingest::ScanReportRow>()?,
+        table::<ingest::WindowRow>()?,
+        table::<characterise::ParametersRow>()?,
+        table::<characterise::AverageRow>()?,
+        table::<characterise::CorrelationRow>()?,
+        table::<characterise::SpectrumRow>()?,
+        table::<characterise::SelfAffineRow>()?,
+        table::<approximate::ScaleRow>()?,
+        table::<approximate::FitRow>()?,
+        table::<approximate::FittedRow>()?,
+        table::<realise::SurfaceRow>()?,
+        table::<bem::SolveRow>()?,
+        table::<bem::CurveRow>()?,
+        arrays(&bem::fields_schema()),
+        table::<tables::FrictionRow>()?,
+        table::<tables::ComparisonRow>()?,
+    ])
+}
+
+fn table<R: Row>() -> Result<(String, Value), ArtifactError> {
+    Ok((format!("{}.v{}", R::SCHEMA, R::VERSION), table_schema::<R>()?))
+}
+
+fn arrays(schema: &crate::artifact::ArraysSchema) -> (String, Value) {
+    (format!("{}.v{}", schema.schema, schema.version), arrays_schema(schema))
+}

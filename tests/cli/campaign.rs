@@ -1,0 +1,259 @@
+//! `asperity run`, `status` and `export`: what they print, and what they refuse.
+
+use super::Outcome;
+use crate::common::Campaign;
+use std::fs;
+
+fn outcome(campaign: &Campaign, arguments: &str) -> Outcome {
+    let output = campaign.command(arguments).output().unwrap();
+    Outcome {
+        code: output.status.code().unwrap(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+const RUN: &str = "run recipe.toml --out out";
+
+#[test]
+fn a_run_tells_of_each_stage_and_leaves_standard_output_to_json() {
+    let campaign = Campaign::new();
+    let first = outcome(&campaign, RUN);
+    assert_eq!((first.code, first.stdout.as_str()), (0, ""));
+    let lines: Vec<&str> = first.stderr.lines().collect();
+    assert!(lines[0].starts_with("ingest ") && lines[0].ends_with(" s"), "{}", first.stderr);
+    assert_eq!(lines.last(), Some(&"results in out"));
+
+    assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).result(), "");
+    let json = outcome(&campaign, &format!("{RUN} --only tables --quiet --json")).json();
+    assert_eq!(json["out"], "out");
+    assert_eq!(json["stages"], serde_json::json!([{ "stage": "tables", "computed": false }]));
+
+    let status = outcome(&campaign, "status recipe.toml --out out").result();
+    assert_eq!(status.lines().count(), 6);
+    assert!(status.lines().all(|line| line.ends_with(" fresh")), "{status}");
+    campaign.edit("recipe.toml", "seed = 1", "seed = 2");
+    let status = outcome(&campaign, "status recipe.toml --out out").result();
+    assert!(status.contains("realise       stale: realise.seed: 1 -> 2\n"), "{status}");
+    let json = outcome(&campaign, "status recipe.toml --out out --json").json();
+    assert_eq!((&json[2]["fresh"], &json[3]["fresh"]), (&true.into(), &false.into()));
+}
+
+#[test]
+fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
+    // What is replaced, by what, and parts of the message: file, key, value, what to do.
+    let cases: [(&str, &str, &[&str]); 29] = [
+        ("seed = 1", "seed = ", &["line 27", "seed ="]),
+        ("seed = 1", "sed = 1", &["line 27", "unknown field `sed`", "`seed`"]),
+        ("seed = 1", "", &["missing field `seed`"]),
+        ("seed = 1", "seed = -1", &["line 27", "seed = -1", "invalid value"]),
+        ("[realise]", "[realize]", &["unknown field `realize`"]),
+        ("speeds_mm_s", "speeds_m_s", &["unknown field `speeds_m_s`", "`speeds_mm_s`"]),
+        ("[10.0]", "[0.0]", &["bem.speeds_mm_s = [0.0]"]),
+        ("[10.0]", "[-10.0]", &["bem.speeds_mm_s = [-10.0]"]),
+        ("[10.0]", "[nan]", &["bem.speeds_mm_s = [NaN]"]),
+        ("[10.0]", "[inf]", &["bem.speeds_mm_s = [inf]"]),
+        ("[10.0]", "[1e-300]", &["bem.speeds_mm_s = [1e-300]", "from 1e-9 to 1e9"]),
+        ("[10.0]", "[10.0, 10.0]", &["bem.speeds_mm_s", "each once"]),
+        ("[10.0]", "[]", &["bem.speeds_mm_s = []"]),
+        ("[0.02, 0.05, 0.1]", "[0.05, 0.02]", &["bem.area_fractions", "ascending"]),
+        ("[0.02, 0.05, 0.1]", "[0.5, 1.0]", &["bem.area_fractions", "between 0 and 1"]),
+        ("[0.02, 0.05, 0.1]", "[]", &["bem.area_fractions = []", "at least one"]),
+        ("5e-3", "inf", &["bem.tolerance = inf"]),
+        ("5e-3", "5e-3\nfield_area_fractions = [0.2]", &["bem.field_area_fractions = [0.2]"]),
+        ("= 16", "= 2", &["bem.points_per_shortest_wavelength = 2", "4 to 65536"]),
+        ("waves = [3]", "waves = [3, 4]", &["realise.waves = [3, 4]", "approximate.waves"]),
+        ("waves = [3]", "waves = []", &["realise.waves = []"]),
+        ("realisations = 2", "realisations = 0", &["realise.realisations = 0"]),
+        ("[2, 3]", "[2, 2, 3]", &["approximate.waves = [2, 2, 3]", "each once"]),
+        ("mm = 0.5", "mm = nan", &["approximate.shortest_wavelength_mm"]),
+        (
+            "shortest_wavelength_mm = 0.5",
+            "given = [{ source = 'x', scales = [{ wavelength_mm = 1.0, amplitude_mm = 0.1 }] }]",
+            &["approximate.given", "either [ingest]"],
+        ),
+        ("x_unit = \"mm\"\n", "", &["[ingest.text]", "`x_unit`", "never guessed", "nm, um, mm, m"]),
+        ("x_unit = \"mm\"", "x_unit = \"inch\"", &["unknown variant `inch`", "`mm`"]),
+        (
+            "\"slope\"",
+            "\"slope\"\nmax_missing = 1.5",
+            &["[ingest.conditioning]: max_missing is 1.5"],
+        ),
+        ("\"slope\"", "{ polynomial = 20 }", &["form.polynomial is 20"]),
+    ];
+    let campaign = Campaign::new();
+    let recipe = campaign.read("recipe.toml");
+    for (from, to, parts) in cases {
+        campaign.edit("recipe.toml", from, to);
+        for command in ["run", "status"] {
+            let arguments = format!("{command} recipe.toml --out out");
+            let message = outcome(&campaign, &arguments).error(2);
+            assert!(message.contains("recipe recipe.toml: "), "{message}");
+            for part in parts {
+                assert!(message.contains(part), "`{to}`, wanted `{part}`:\n{message}");
+            }
+        }
+        assert!(!campaign.path("out").exists(), "{to}");
+        campaign.write("recipe.toml", &recipe);
+    }
+}
+
+#[test]
+fn missing_files_are_named_and_nothing_is_written() {
+    let campaign = Campaign::new();
+    let recipe = campaign.read("recipe.toml");
+    let error = |arguments: &str| outcome(&campaign, arguments).error(2);
+    assert!(error("run none.toml --out out").contains("recipe none.toml: cannot be read"));
+    assert!(error("run scans --out out").contains("recipe scans: cannot be read"));
+    let edited = |from: &str, to: &str| {
+        campaign.edit("recipe.toml", from, to);
+        let message = error(RUN);
+        campaign.write("recipe.toml", &recipe);
+        message
+    };
+    let message = edited(r#"["scans"]"#, r#"["tracks"]"#);
+    assert!(message.contains("cannot read the scans tracks: ") && message.contains("--scans"));
+    assert!(edited(r#"["scans"]"#, "[]").contains("no scan files in []"));
+    fs::create_dir(campaign.path("empty")).unwrap();
+    assert!(edited(r#"["scans"]"#, r#"["empty"]"#).contains("no scan files in [empty]"));
+    let message = edited(r#"["scans"]"#, r#"["scans", "scans/track_0.txt"]"#);
+    assert!(message.contains("two scans are named track_0"), "{message}");
+    assert!(
+        edited("\"rubber.toml\"", "\"none.toml\"").contains("cannot read the rubber none.toml")
+    );
+    assert!(edited("\"rubber.toml\"", "\"recipe.toml\"").contains("does not describe a rubber"));
+    let rubber = campaign.read("rubber.toml");
+    campaign.edit("rubber.toml", "= 0.49", "= 0.6");
+    let message = error(RUN);
+    assert!(message.contains("rubber.toml") && message.contains("poisson_ratio is 0.6"));
+    campaign.write("rubber.toml", &rubber);
+    assert!(error(&format!("{RUN} --threads 0")).contains("--threads is 0"));
+    assert!(error(&format!("{RUN} --threads two")).contains("`two` is no whole number"));
+    assert!(error(&format!("{RUN} --only fem")).contains("approximate, realise, bem, tables"));
+    assert!(error(&format!("{RUN} --only bem --from bem")).contains("cannot be used with"));
+    assert!(!campaign.path("out").exists());
+}
+
+#[test]
+fn bad_scans_are_named_with_line_and_reason_and_leave_no_result() {
+    let campaign = Campaign::new();
+    let good = campaign.read("scans/track_1.txt");
+    let refused = |text: &str, parts: &[&str]| {
+        campaign.write("scans/track_1.txt", text);
+        let message = outcome(&campaign, RUN).error(2);
+        for part in ["ingest: ", "track_1"].iter().chain(parts) {
+            assert!(message.contains(part), "wanted `{part}`:\n{message}");
+        }
+        assert!(!campaign.path("out/ingest").exists());
+    };
+    refused("", &["the file is empty"]);
+    refused("\u{89}PNG\0\0", &["binary data"]);
+    refused("a,b\n1,2\n3,4\n", &["no column `x_mm`", "separator"]);
+    refused(&good.replace("0.050;", "0.050;x"), &["line 5", "z_um", "is not a number"]);
+    refused(&good.replace("0.075;", "0.050;"), &["line 6", "is there twice"]);
+    let lines = |keep: usize| good.lines().take(keep).map(|l| format!("{l}\n")).collect::<String>();
+    refused(&lines(200), &["same spacing and length", "window_length_mm"]);
+    let gaps = |every: usize| -> String {
+        let line = |(i, line): (usize, &str)| match line.split_once(';') {
+            Some((x, _)) if i > 1 && i.is_multiple_of(every) => format!("{x};BAD\n"),
+            _ => format!("{line}\n"),
+        };
+        good.lines().enumerate().map(line).collect()
+    };
+    refused(&gaps(1), &["all 320 heights are missing", "`missing`"]);
+    refused(&gaps(3), &["of the points are missing", "the limit is 10.0 %", "max_missing"]);
+
+    campaign.write("scans/track_1.txt", &good);
+    campaign.write("average.txt", &good);
+    let message = outcome(&campaign, &format!("{RUN} --scans scans average.txt")).error(2);
+    assert!(message.contains("average.txt") && message.contains("rename the file"), "{message}");
+    assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).result(), "");
+}
+
+#[test]
+fn a_failed_computation_is_exit_code_1_and_keeps_what_was_done() {
+    let campaign = Campaign::new();
+    campaign.edit("recipe.toml", "[0.02, 0.05, 0.1]", "[1e-12]");
+    let failed = outcome(&campaign, RUN);
+    assert_eq!((failed.code, failed.stdout.as_str()), (1, ""));
+    let message = failed.stderr.lines().find(|line| line.starts_with("error: ")).unwrap();
+    assert!(message.starts_with("error: bem: 3 waves, realisation "), "{message}");
+    assert!(campaign.path("out/realise/manifest.json").exists());
+    assert!(!campaign.path("out/bem").exists());
+}
+
+/// 20 waves at 65536 points a wave would not fit into any memory.
+#[test]
+fn a_grid_too_large_to_hold_is_refused() {
+    let campaign = Campaign::new();
+    let longest = 0.0625 * 2_f64.powi(19);
+    let given = format!(
+        "given = [{{ source = 'x', scales = [{{ wavelength_mm = 0.0625, amplitude_mm = 0.01 }}, \
+         {{ wavelength_mm = {longest:?}, amplitude_mm = 1.0 }}] }}]"
+    );
+    let recipe = format!(
+        "title = 'x'\n[approximate]\n{given}\n[realise]\nwaves = [2]\nrealisations = 1\nseed = 1\n\
+         [bem]\nrubber = 'rubber.toml'\nspeeds_mm_s = [10.0]\npoints_per_shortest_wavelength = 65536\n"
+    );
+    campaign.write("recipe.toml", &recipe);
+    let failed = outcome(&campaign, RUN);
+    assert_eq!(failed.code, 1);
+    assert!(failed.stderr.contains("points_per_shortest_wavelength"), "{}", failed.stderr);
+    assert!(failed.stderr.contains("8 to 16777216"), "{}", failed.stderr);
+    let refused = outcome(&campaign, &format!("{RUN} --scans scans")).error(2);
+    assert!(refused.contains("leave --scans out"), "{refused}");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named() {
+    let campaign = Campaign::new();
+    campaign.write("file", "mine");
+    let message = outcome(&campaign, "run recipe.toml --out file").error(1);
+    assert!(message.contains("cannot create file"), "{message}");
+    assert_eq!(campaign.read("file"), "mine");
+    let folder = campaign.path("locked");
+    fs::create_dir(&folder).unwrap();
+    let mut permissions = fs::metadata(&folder).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&folder, permissions).unwrap();
+    if fs::write(folder.join("probe"), "").is_ok() {
+        eprintln!("skipped: this user may write to a read-only folder");
+        return;
+    }
+    let message = outcome(&campaign, "run recipe.toml --out locked").error(1);
+    assert!(message.contains("locked") && message.contains("write access"), "{message}");
+}
+
+#[test]
+fn exports_are_complete_or_refused() {
+    let campaign = Campaign::new();
+    campaign.edit("recipe.toml", "[10.0]", "[10.0, 50.0]");
+    let export = |arguments: &str| outcome(&campaign, &format!("export {arguments}"));
+    assert!(
+        export("out --format csv").error(2).contains("no finished result of the stage `tables`")
+    );
+    assert!(export("recipe.toml --format csv").error(2).contains("give the folder of a run"));
+    assert!(export("out --format xlsx").error(2).contains("csv, markdown, latex, parquet, svg"));
+    assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).result(), "");
+    assert!(export("out --format csv --waves 9").error(2).contains("leave --waves or --speed out"));
+    assert!(export("out --format csv --speed 11").error(2).contains("no table"));
+    assert!(export("out --format csv").error(2).contains("there are 2 tables"));
+    assert!(export("out --format parquet").error(2).contains("--to"));
+    let message = export("out --format markdown --to none/friction.md").error(1);
+    assert!(message.contains("none/friction.md"), "{message}");
+
+    let csv = export("out --format csv --speed 50").result();
+    let header =
+        "area_fraction,realisation_1,realisation_2,average,standard_deviation,confidence_95";
+    assert_eq!(csv.lines().next(), Some(header));
+    assert_eq!(csv.lines().count(), 1 + 3);
+    for (format, start) in [("markdown", ""), ("latex", ""), ("svg", "<svg")] {
+        let text = export(&format!("out --format {format}")).result();
+        assert!(text.contains(start) && !text.is_empty(), "{format}");
+    }
+    export("out --format csv --to tables").result();
+    assert_eq!(fs::read_dir(campaign.path("tables")).unwrap().count(), 2);
+    export("out --format parquet --to friction.parquet").result();
+    assert!(fs::read(campaign.path("friction.parquet")).unwrap().starts_with(b"PAR1"));
+    assert!(export("out --format parquet --to friction.parquet").error(2).contains("--force"));
+}

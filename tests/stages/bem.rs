@@ -1,0 +1,144 @@
+//! bem and tables, against contacts solved one by one.
+
+use super::{Campaign, recipe, run};
+use asperity::artifact::RunView;
+use asperity::contact::SlidingContact;
+use asperity::numerics::statistics::MeanEstimate;
+use asperity::recipe::Recipe;
+use asperity::rubber::read_rubber;
+use asperity::stages::bem::{
+    CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, SOLVES_FILE, SolveRow,
+};
+use asperity::stages::realise::{Surface, read_surfaces};
+use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
+use asperity::surface::wave;
+
+const TOLERANCE: f64 = 1e-3;
+
+/// A run over four realisations, with the waves stated in the recipe.
+fn solved() -> (Campaign, Recipe, RunView) {
+    let campaign = Campaign::new();
+    campaign.write(
+        "recipe.toml",
+        r#"
+        title = "Three given waves"
+        [[approximate.given]]
+        source = "a test"
+        scales = [
+            { wavelength_mm = 0.25, amplitude_mm = 0.005 },
+            { wavelength_mm = 0.5, amplitude_mm = 0.01 },
+            { wavelength_mm = 1.0, amplitude_mm = 0.02 },
+        ]
+        [realise]
+        waves = [3]
+        realisations = 4
+        seed = 5
+        [bem]
+        rubber = "rubber.toml"
+        speeds_mm_s = [1.0, 100.0]
+        area_fractions = [0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.2]
+        field_area_fractions = [0.1]
+        tolerance = 1e-3
+        points_per_shortest_wavelength = 64
+        "#,
+    );
+    let recipe = recipe(&campaign);
+    let out = campaign.path("out");
+    run(&recipe, &out);
+    (campaign, recipe, RunView::of(out))
+}
+
+#[test]
+fn every_solve_is_a_solution_and_the_curve_holds_between_them() {
+    let (_campaign, recipe, view) = solved();
+    let (solves, _) = view.read_table::<SolveRow>("bem", SOLVES_FILE).unwrap();
+    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    assert_eq!(curves.len(), 4 * 2 * 7);
+    for row in &solves {
+        assert!(row.residual <= 1e-10, "{row:?}");
+        assert!((0.0..=1.0).contains(&row.contact_area_fraction), "{row:?}");
+        // Fewer points in contact only at 16 times the points of the coarsest grid, 256.
+        let contact_points = row.contact_area_fraction * row.grid_points as f64;
+        assert!(contact_points >= 100.0 || row.grid_points == 4096, "{row:?}");
+    }
+    let rubber = read_rubber(&recipe.bem.rubber).unwrap();
+    let surfaces = read_surfaces(&view).unwrap();
+    for row in &curves {
+        let same = |solve: &&SolveRow| {
+            (solve.realisation, solve.speed_mm_s) == (row.realisation, row.speed_mm_s)
+        };
+        let (mut below, mut above) = (false, false);
+        for solve in solves.iter().filter(same) {
+            below |= solve.contact_area_fraction <= row.contact_area_fraction;
+            above |= solve.contact_area_fraction >= row.contact_area_fraction;
+        }
+        assert!(below && above, "not bracketed: {row:?}");
+
+        let nearest = solves.iter().filter(same).min_by(|a, b| {
+            let far = |s: &SolveRow| (s.pressure_mpa / row.pressure_mpa).ln().abs();
+            far(a).total_cmp(&far(b))
+        });
+        let points = nearest.unwrap().grid_points as usize;
+        let Surface { profile, .. } =
+            surfaces.iter().find(|surface| surface.realisation == row.realisation).unwrap();
+        let heights = wave::sample(profile, 1e-3, points);
+        let mut contact =
+            SlidingContact::new(&rubber, row.speed_mm_s / 1e3, 1e-3, &heights).unwrap();
+        let direct = contact.solve_for_area(row.contact_area_fraction, 1e-9).unwrap();
+        // Twice the tolerance: the check that ended the sampling was made beside this area.
+        let friction = direct.friction_coefficient;
+        let error = (friction - row.friction_coefficient).abs();
+        assert!(error <= 2.0 * TOLERANCE * friction, "{row:?}: direct {friction}");
+        // The pressure has no tolerance of its own; the area is nearly proportional to it.
+        let pressure = direct.mean_pressure / 1e6;
+        approx::assert_relative_eq!(row.pressure_mpa, pressure, max_relative = 0.02);
+    }
+}
+
+#[test]
+fn tables_average_over_the_realisations() {
+    let (_campaign, _, view) = solved();
+    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    assert_eq!(rows.len(), 2 * 7);
+    for row in &rows {
+        let of_row = |c: &&CurveRow| {
+            (c.speed_mm_s, c.contact_area_fraction) == (row.speed_mm_s, row.contact_area_fraction)
+        };
+        let friction: Vec<f64> =
+            curves.iter().filter(of_row).map(|c| c.friction_coefficient).collect();
+        let estimate = MeanEstimate::of(&friction);
+        assert_eq!(row.realisations, friction);
+        assert_eq!(
+            (row.mean, row.standard_deviation),
+            (friction.iter().sum::<f64>() / 4.0, Some(estimate.standard_deviation))
+        );
+        // t(0.975, 3) = 3.18245 in every table.
+        let half_width = 3.18245 * estimate.standard_deviation / 2.0;
+        approx::assert_relative_eq!(row.confidence_95.unwrap(), half_width, max_relative = 1e-5);
+    }
+}
+
+#[test]
+fn fields_are_kept_at_the_wanted_areas() {
+    let (_campaign, _, view) = solved();
+    let datasets = view.read_arrays("bem", FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION).unwrap();
+    assert_eq!(datasets.len(), 4 * 2 * 2);
+    for pair in datasets.chunks(2) {
+        let [pressure, separation] = pair else { unreachable!("chunks of two") };
+        let group = "waves_3/realisation_1/speed_1_mm_s/area_0.1/pressure";
+        assert!(pressure.name != group || pressure.unit == "Pa", "{}", pressure.unit);
+        assert!(pressure.name.ends_with("/pressure") && separation.name.ends_with("/separation"));
+        assert_eq!(pressure.values.len(), separation.values.len());
+        let mut touching = 0;
+        for (t, u) in pressure.values.iter().zip(&separation.values) {
+            // Closed to round-off against waves of 20 µm.
+            let closed = *t == 0.0 || u.abs() < 1e-15;
+            assert!(*t >= 0.0 && *u > -1e-15 && closed, "{t} Pa at a separation of {u} m");
+            touching += usize::from(*t > 0.0);
+        }
+        let area = touching as f64 / pressure.values.len() as f64;
+        // Counted in points, a contact is uncertain by one at each edge.
+        assert!((area - 0.1).abs() < 0.02, "{area}");
+    }
+}

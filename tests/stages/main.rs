@@ -1,0 +1,65 @@
+//! The stages on data of which the result is known, and the run folder through everything that
+//! happens to it.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bem;
+mod changes;
+mod damage;
+mod golden;
+mod interruption;
+mod scans;
+mod schemas;
+mod waves;
+
+use asperity::artifact::{Digest, RunView};
+use asperity::pipeline::{self, PipelineError, Selection, State};
+use asperity::recipe::Recipe;
+use asperity::stages::Stage;
+use common::Campaign;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+fn recipe(campaign: &Campaign) -> Recipe {
+    Recipe::read(&campaign.path("recipe.toml")).unwrap()
+}
+
+/// Runs what the selection asks for and returns the stages that were computed.
+fn try_run(recipe: &Recipe, out: &Path, selection: Selection) -> Result<Vec<Stage>, PipelineError> {
+    let computed = std::sync::Mutex::new(Vec::new());
+    pipeline::run(recipe, out, selection, &AtomicBool::new(false), &|event| {
+        if let pipeline::Event::Finished(stage, _) = event {
+            computed.lock().unwrap().push(stage);
+        }
+    })?;
+    Ok(computed.into_inner().unwrap())
+}
+
+fn run(recipe: &Recipe, out: &Path) -> Vec<Stage> {
+    try_run(recipe, out, Selection::default()).unwrap()
+}
+
+/// The stages that are stale, and why.
+fn stale(recipe: &Recipe, out: &Path) -> Vec<(Stage, String)> {
+    let states = pipeline::status(recipe, out).unwrap().into_iter();
+    states
+        .filter_map(|(stage, state)| match state {
+            State::Fresh => None,
+            State::Stale(reasons) => Some((stage, reasons.join("; "))),
+        })
+        .collect()
+}
+
+/// Content digests of all files of all finished stages.
+fn digests(out: &Path) -> BTreeMap<String, Digest> {
+    let view = RunView::of(out);
+    let manifests = Stage::ALL.iter().filter_map(|s| view.stage_manifest(s.name()).unwrap());
+    manifests
+        .flat_map(|m| {
+            let name = move |file: &str| format!("{}/{file}", m.stage);
+            m.outputs.clone().into_iter().map(move |o| (name(&o.file), o.content_digest))
+        })
+        .collect()
+}

@@ -1,0 +1,170 @@
+//! approximate and realise on a correlation that is known in closed form.
+
+use super::Campaign;
+use asperity::artifact::{Identity, Manifest, Metadata, Pending, RunFolder};
+use asperity::stages::approximate::{self, Approximate, FITS_FILE, FitRow, ScaleRow, WAVES_FILE};
+use asperity::stages::characterise::{
+    AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY,
+};
+use asperity::stages::realise::{self, Realise, Surface, read_surfaces};
+use asperity::stages::{Context, StageError};
+use asperity::surface::SineScale;
+use asperity::surface::ladder::Undetermined;
+use asperity::surface::realisation::random_phases;
+use serde_json::json;
+use std::f64::consts::PI;
+use std::sync::atomic::AtomicBool;
+
+const SPACING_MM: f64 = 0.025;
+const WINDOW_POINTS: usize = 400;
+/// Wavelength and amplitude in mm.
+const WAVES: [(f64, f64); 4] = [(0.25, 0.01), (0.5, 0.02), (1.0, 0.015), (2.0, 0.05)];
+
+/// (3.3.12-13), summed over the waves.
+fn correlation_mm2(lag_mm: f64) -> f64 {
+    let of = |(wavelength, amplitude): (f64, f64)| {
+        let rise = (PI * lag_mm.min(wavelength / 2.0) / wavelength).sin();
+        2.0 * amplitude * amplitude * rise * rise
+    };
+    WAVES.into_iter().map(of).sum()
+}
+
+/// Calls `compute` as the pipeline does and makes what it writes the result of the stage.
+fn commit<T>(
+    folder: &RunFolder,
+    stage: &str,
+    compute: impl FnOnce(&mut Context) -> Result<T, StageError>,
+) -> Result<T, StageError> {
+    let interrupted = AtomicBool::new(false);
+    let pending: Pending = folder.begin(stage)?;
+    let mut context = Context { pending, progress: &|_, _| {}, interrupted: &interrupted };
+    let result = compute(&mut context)?;
+    let identity = Identity {
+        stage: stage.into(),
+        stage_revision: 1,
+        output_schemas: Vec::new(),
+        parameters: json!({}),
+        inputs: Vec::new(),
+    };
+    let outputs = context.pending.outputs().to_vec();
+    context.pending.commit(&Manifest::new(&identity, outputs, Vec::new(), 0.0))?;
+    Ok(result)
+}
+
+/// A run folder that has a window of 10 mm and that correlation in it.
+fn measured(campaign: &Campaign) -> RunFolder {
+    let folder = RunFolder::open(campaign.path("out")).unwrap();
+    commit(&folder, "characterise", |context| {
+        let row = |lag: usize| CorrelationRow {
+            scan: AVERAGE.into(),
+            lag_mm: SPACING_MM * lag as f64,
+            correlation_mm2: correlation_mm2(SPACING_MM * lag as f64),
+            pairs: (WINDOW_POINTS - lag) as u64,
+        };
+        // Nearly log-spaced, and short of half the window, as the stage keeps them.
+        let mut lags: Vec<usize> = (0..36).map(|i| 1.15_f64.powi(i) as usize).collect();
+        lags.dedup();
+        let rows: Vec<_> = lags.into_iter().map(row).collect();
+        let metadata = Metadata::from([(WINDOW_LENGTH_KEY.to_owned(), "10".to_owned())]);
+        Ok(context.pending.write_table(CORRELATION_FILE, &rows, &metadata)?)
+    })
+    .unwrap();
+    folder
+}
+
+fn parameters(shortest_wavelength_mm: f64, waves: &[u32]) -> Approximate {
+    Approximate {
+        waves: waves.to_vec(),
+        given: Vec::new(),
+        shortest_wavelength_mm: Some(shortest_wavelength_mm),
+        undetermined: Undetermined::Drop,
+        longest_lag_mm: None,
+    }
+}
+
+#[test]
+fn approximate_recovers_the_amplitudes() {
+    let campaign = Campaign::new();
+    let folder = measured(&campaign);
+    let warnings =
+        commit(&folder, "approximate", |c| approximate::run(&parameters(0.25, &[4]), &folder, c));
+    assert_eq!(warnings.unwrap(), Vec::<String>::new());
+    let (rows, _) = folder.read_table::<ScaleRow>("approximate", WAVES_FILE).unwrap();
+    assert_eq!(rows.len(), 4);
+    for (row, (wavelength, amplitude)) in rows.iter().zip(WAVES) {
+        assert_eq!(row.wavelength_mm, wavelength);
+        // The fit ends at a gradient of 1e-9 or so in relative amplitudes.
+        approx::assert_relative_eq!(row.amplitude_mm, amplitude, max_relative = 1e-6);
+        approx::assert_relative_eq!(
+            row.rms_slope,
+            2_f64.sqrt() * PI * row.amplitude_mm / wavelength,
+            max_relative = 1e-12
+        );
+        assert_eq!(row.amplitude_confidence_95_mm, None, "one window has no spread");
+    }
+    let (fits, _) = folder.read_table::<FitRow>("approximate", FITS_FILE).unwrap();
+    assert!(fits[0].rms_residual_log10 < 1e-6 && fits[0].warnings.is_empty(), "{fits:?}");
+}
+
+/// Half a window is half of the 10 mm that ingest cut, not of the longest lag that was kept.
+#[test]
+fn waves_beyond_two_samples_and_half_a_window_are_left_out_or_kept_with_a_warning() {
+    let campaign = Campaign::new();
+    let folder = measured(&campaign);
+    let fit = |parameters: &Approximate| {
+        commit(&folder, "approximate", |c| approximate::run(parameters, &folder, c)).unwrap();
+        folder.read_table::<ScaleRow>("approximate", WAVES_FILE).unwrap()
+    };
+    let wavelengths =
+        |rows: &[ScaleRow]| rows.iter().map(|row| row.wavelength_mm).collect::<Vec<_>>();
+
+    let mut asked = parameters(5.0 / 128.0, &[9]);
+    let (rows, metadata) = fit(&asked);
+    assert_eq!(wavelengths(&rows), [5.0 / 64.0, 5.0 / 32.0, 0.3125, 0.625, 1.25, 2.5, 5.0]);
+    let of_the_limits = |metadata: &Metadata| -> Vec<String> {
+        metadata.values().filter(|text| text.contains("not determined")).cloned().collect()
+    };
+    let warnings = of_the_limits(&metadata);
+    assert_eq!(warnings.len(), 2);
+    assert!(warnings[0].contains("0.03906") && warnings[0].contains("two sample spacings"));
+    assert!(warnings[1].contains("10.000000 mm") && warnings[1].contains("(5.000000 mm)"));
+
+    asked.undetermined = Undetermined::Keep;
+    let (rows, metadata) = fit(&asked);
+    let warnings = of_the_limits(&metadata);
+    assert_eq!((rows.len(), warnings.len()), (9, 2));
+    assert!(warnings.iter().all(|warning| warning.ends_with("kept")), "{warnings:?}");
+}
+
+#[test]
+fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
+    let campaign = Campaign::new();
+    let folder = measured(&campaign);
+    commit(&folder, "approximate", |c| approximate::run(&parameters(0.25, &[3, 4]), &folder, c))
+        .unwrap();
+    let realised = |seed| -> Vec<Surface> {
+        let parameters = Realise { waves: vec![3, 4], realisations: 5, seed };
+        commit(&folder, "realise", |c| realise::run(&parameters, &folder, c)).unwrap();
+        read_surfaces(&folder).unwrap()
+    };
+    let surfaces = realised(7);
+    let names: Vec<_> = surfaces.iter().map(|s| (s.waves, s.realisation)).collect();
+    let expected: Vec<_> = [3, 4].iter().flat_map(|w| (1..=5).map(move |r| (*w, r))).collect();
+    assert_eq!(names, expected);
+
+    let (fitted, _) = folder.read_table::<ScaleRow>("approximate", WAVES_FILE).unwrap();
+    for surface in &surfaces {
+        let scales: Vec<SineScale> = fitted
+            .iter()
+            .filter(|row| row.waves == surface.waves)
+            .map(|row| SineScale {
+                wavelength: row.wavelength_mm / 1e3,
+                amplitude: row.amplitude_mm / 1e3,
+            })
+            .collect();
+        // To the last bit, through the file.
+        assert_eq!(surface.profile, random_phases(&scales, 7, surface.realisation.into()));
+    }
+    assert_eq!(realised(7), surfaces);
+    assert_ne!(realised(8), surfaces);
+}
