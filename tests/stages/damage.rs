@@ -15,13 +15,16 @@ fn outputs(out: &Path) -> Vec<(Stage, String)> {
     Stage::ALL.into_iter().flat_map(files).collect()
 }
 
+/// What happens to the bytes of a file.
+type Damage = (&'static str, fn(&mut Vec<u8>));
+
 #[test]
 fn every_damaged_file_is_named_and_made_again() {
     let campaign = Campaign::new();
     let (recipe, out) = (recipe(&campaign), campaign.path("out"));
     run(&recipe, &out);
     let before = digests(&out);
-    let damages: [(&str, fn(&mut Vec<u8>)); 4] = [
+    let damages: [Damage; 4] = [
         ("truncated", |bytes| bytes.truncate(bytes.len() / 2)),
         ("one bit flipped", |bytes| {
             let middle = bytes.len() / 2;
