@@ -6,12 +6,19 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`artifact`] | tables (Arrow), arrays (HDF5), manifests, digests and the folder of a run |
-//! | [`cli`] | arguments, printing, exit codes |
-//! | [`numerics`] | FFT, Krylov, interpolation, statistics: no physics, no files |
-//! | [`reference`] | exact solutions: Westergaard, full contact, Hertz |
-//! | [`scans`] | readers of instrument files |
-//! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines |
+//! | [`numerics`] | FFT-free mathematics: Krylov, interpolation, statistics; no physics, no files |
+//! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
+//! | [`rubber`] | generalised Maxwell model and its file |
+//! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
+//! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
+//! | [`scans`] | readers of instrument files: bytes in, scan or error out |
+//! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
+//! | [`schemas`] | the documents in `schemas/` |
+//! | [`stages`] | one file a stage: parameters, row types, one function |
+//! | [`recipe`] | the TOML file that says what a run does |
+//! | [`pipeline`] | the one function that wires the stages |
+//! | [`report`] | tables and figures for people |
+//! | [`cli`] | arguments, progress bars, printing |
 //!
 //! # Conventions
 //! SI in memory (m, Pa, s, rad); mm, MPa and mm/s at the edges only, always with the unit in the
