@@ -1,9 +1,12 @@
 //! Symmetries of the model, on random surfaces.
 
-use crate::surfaces::{Profile, superposed, table_2_1};
+use crate::surfaces::{Profile, random_phases, superposed, table_2_1};
 use asperity::contact::{ContactSolution, SlidingContact};
 use asperity::rubber::Rubber;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
 const SPEED: f64 = 0.01;
@@ -40,7 +43,12 @@ fn pressures() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    // A fixed seed: what passed here passes anywhere.
+    #![proptest_config(ProptestConfig {
+        cases: 24,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn pressure_and_moduli_scale_together(
@@ -76,17 +84,29 @@ proptest! {
         let b = solve(&table_2_1(), -SPEED, &mirrored, p);
         assert_same(&a, &b, -1.0);
     }
+}
 
-    #[test]
-    fn odd_and_even_grids_agree_to_the_discretisation(phases in phases(), p in pressures()) {
-        let a = solve(&table_2_1(), SPEED, &superposed(&phases, 4096), p);
-        let b = solve(&table_2_1(), SPEED, &superposed(&phases, 4095), p);
-        // The smallest spots are 20 points wide; the error is about (1/20)² of their share.
-        approx::assert_relative_eq!(
-            a.contact_area_fraction, b.contact_area_fraction, max_relative = 1e-3
-        );
-        approx::assert_relative_eq!(
-            a.friction_coefficient, b.friction_coefficient, max_relative = 1e-3
-        );
-    }
+/// Both grids hold 64 points per shortest wave. What a grid can miss is a spot at its birth or two
+/// spots at their merging, which it sites to a spacing; everywhere else the edges are read between
+/// the points and the grids agree a hundred times better.
+#[test]
+fn odd_and_even_grids_agree_to_the_discretisation() {
+    let mut generator = Pcg64::seed_from_u64(1);
+    let mut spacings_apart: Vec<f64> = (0..40)
+        .map(|case| {
+            let phases = random_phases(3, case);
+            let p = f64::exp(generator.random_range(11.5..16.0));
+            let even = solve(&table_2_1(), SPEED, &superposed(&phases, 4096), p);
+            let odd = solve(&table_2_1(), SPEED, &superposed(&phases, 4095), p);
+            approx::assert_relative_eq!(
+                even.friction_coefficient,
+                odd.friction_coefficient,
+                max_relative = 1e-3
+            );
+            4096.0 * (even.contact_area_fraction - odd.contact_area_fraction).abs()
+        })
+        .collect();
+    spacings_apart.sort_by(f64::total_cmp);
+    let [nine_in_ten, all] = [spacings_apart[35], spacings_apart[39]];
+    assert!(nine_in_ten < 0.01 && all < 1.0, "{nine_in_ten}, {all} spacings");
 }
