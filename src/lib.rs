@@ -29,6 +29,7 @@
 pub mod artifact;
 pub mod cli;
 pub mod contact;
+pub mod fem;
 pub mod numerics;
 pub mod pipeline;
 pub mod recipe;

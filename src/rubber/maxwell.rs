@@ -49,6 +49,18 @@ pub enum RubberError {
         /// The value.
         value: f64,
     },
+    /// A Poisson ratio too close to that of an incompressible solid for finite elements.
+    #[error(
+        "rubber {rubber}: poisson_ratio is {value}, the finite-deformation model takes at most {limit}"
+    )]
+    NotCompressible {
+        /// Name of the rubber.
+        rubber: String,
+        /// The value.
+        value: f64,
+        /// The largest value it takes.
+        limit: f64,
+    },
 }
 
 impl Rubber {

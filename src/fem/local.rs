@@ -1,0 +1,144 @@
+//! The tangent without its memory, factorised: the preconditioner of the steady solver.
+//!
+//! At a depth z the strains are those of waves of about the length z and shorter ones have died
+//! out. A row is therefore given the stiffness that its branches have at the wavenumber
+//! `1 / z`: the internal tensors follow their own point by the fraction `1 / (1 + (q v τ)²)`.
+//! What remains local is sparse and is factorised exactly, with all of the deformation, of the
+//! stresses and of the contact in it.
+
+use super::block::Block;
+use super::unknowns::Unknowns;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
+
+/// Stiffness of one contact node: its 2×2 block.
+pub type NodeStiffness = [[f64; 2]; 2];
+
+/// The pattern of the sparse matrix, made once for a mesh.
+pub struct LocalPattern {
+    unknowns: Unknowns,
+    symbolic: SymbolicSparseColMat<usize>,
+    argsort: Argsort<usize>,
+    symbolic_lu: SymbolicLu<usize>,
+    /// Fraction by which each branch follows, for each row.
+    follows: Vec<Vec<f64>>,
+}
+
+/// A factorised local tangent.
+pub struct LocalTangent {
+    unknowns: Unknowns,
+    lu: Lu<usize, f64>,
+    /// Response of all unknowns to the displacement of the upper edge.
+    edge_response: Vec<f64>,
+}
+
+impl LocalPattern {
+    /// The pattern for a block and its relaxation lengths `v τ` in m.
+    pub fn new(block: &Block, relaxation_lengths: &[f64]) -> Self {
+        let mesh = block.mesh();
+        let unknowns = Unknowns { columns: mesh.columns, rows: mesh.rows() };
+        let mut pairs = Vec::new();
+        for_each_entry(unknowns, |row, col| pairs.push(Pair { row, col }));
+        for node in 0..mesh.columns {
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                pairs.push(Pair { row: 2 * node + i, col: 2 * node + j });
+            }
+        }
+        let size = unknowns.own();
+        let (symbolic, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
+            .expect("indices lie in the matrix");
+        let symbolic_lu = SymbolicLu::try_new(symbolic.as_ref()).expect("memory for the pattern");
+        let heights = mesh.node_heights();
+        let follows = (0..mesh.rows())
+            .map(|row| {
+                let depth = 0.5 * (heights[row] + heights[row + 1]);
+                let q = (std::env::var("QF").map(|f| f.parse::<f64>().unwrap()).unwrap_or(1.0)
+                    / depth)
+                    .max(std::f64::consts::TAU / mesh.period);
+                relaxation_lengths.iter().map(|length| 1.0 / (1.0 + (q * length).powi(2))).collect()
+            })
+            .collect();
+        Self { unknowns, symbolic, argsort, symbolic_lu, follows }
+    }
+
+    /// Factorises the local tangent of the block with the stiffness of its contact nodes.
+    pub fn factorise(&self, block: &Block, contact: &[NodeStiffness]) -> Option<LocalTangent> {
+        let unknowns = self.unknowns;
+        let mut values = Vec::new();
+        let mut edge = vec![0.0; unknowns.own()];
+        for (r, row) in block.rows().iter().enumerate() {
+            for column in 0..unknowns.columns {
+                let stiffness = row.local_stiffness(block.material(), &self.follows[r], column);
+                let places = entries(unknowns, r, column);
+                for (j, col) in places.iter().enumerate() {
+                    for (i, row) in places.iter().enumerate() {
+                        match (row, col) {
+                            (Some(_), Some(_)) => values.push(stiffness[i][j]),
+                            (Some(row), None) => edge[*row] += stiffness[i][j],
+                            _ => {}
+                        }
+                    }
+                }
+            }
+        }
+        values.extend(contact.iter().flat_map(|k| [k[0][0], k[0][1], k[1][0], k[1][1]]));
+        let matrix =
+            SparseColMat::new_from_argsort(self.symbolic.clone(), &self.argsort, &values).ok()?;
+        let lu = Lu::try_new_with_symbolic(self.symbolic_lu.clone(), matrix.as_ref()).ok()?;
+        let mut tangent = LocalTangent { unknowns, lu, edge_response: Vec::new() };
+        tangent.solve_own(&mut edge);
+        tangent.edge_response = edge;
+        Some(tangent)
+    }
+}
+
+impl LocalTangent {
+    /// Solves with the local tangent: forces and, at the end, the mean displacement of the
+    /// contact nodes in; unknowns out.
+    pub fn solve(&self, right: &mut [f64]) {
+        let own = self.unknowns.own();
+        let (nodes, common) = right.split_at_mut(own);
+        self.solve_own(nodes);
+        let missing = common[0] - self.unknowns.mean_contact_displacement(nodes);
+        let common_displacement =
+            -missing / self.unknowns.mean_contact_displacement(&self.edge_response);
+        for (node, response) in nodes.iter_mut().zip(&self.edge_response) {
+            *node -= response * common_displacement;
+        }
+        common[0] = common_displacement;
+    }
+
+    fn solve_own(&self, right: &mut [f64]) {
+        let size = right.len();
+        let column = faer::MatMut::from_column_major_slice_mut(right, size, 1);
+        self.lu.solve_in_place(column);
+    }
+}
+
+/// Unknowns of the eight displacements of an element.
+fn entries(unknowns: Unknowns, row: usize, column: usize) -> [Option<usize>; 8] {
+    let row_len = 2 * unknowns.columns;
+    let right = (column + 1) % unknowns.columns;
+    let mut places = [None; 8];
+    for (node, at) in [column, right, column, right].into_iter().enumerate() {
+        let first = (row + node / 2) * row_len + 2 * at;
+        places[2 * node] = unknowns.of(first);
+        places[2 * node + 1] = unknowns.of(first + 1);
+    }
+    places
+}
+
+/// Calls back with row and column of every entry of every element, in the order of assembly.
+fn for_each_entry(unknowns: Unknowns, mut entry: impl FnMut(usize, usize)) {
+    for row in 0..unknowns.rows {
+        for column in 0..unknowns.columns {
+            let places = entries(unknowns, row, column);
+            for col in places.into_iter().flatten() {
+                for row in places.into_iter().flatten() {
+                    entry(row, col);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Finite deformation.
+pub mod block;
+pub mod filter;
+pub mod local;
+pub mod mesh;
+pub mod profile;
+pub mod row;
+pub mod steady;
+pub mod unknowns;

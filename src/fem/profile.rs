@@ -1,0 +1,176 @@
+//! The rigid profile as a smooth function of position.
+
+use crate::surface::Wave;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Height, slope and curvature of the profile at one position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Height {
+    /// Height z in m.
+    pub height: f64,
+    /// Slope `dz/dx`.
+    pub slope: f64,
+    /// Second derivative `d²z/dx²` in 1/m.
+    pub curvature: f64,
+}
+
+/// A rigid periodic profile `z(x)` that can be read anywhere.
+#[derive(Debug, Clone)]
+pub struct RigidProfile {
+    period: f64,
+    shape: Shape,
+}
+
+#[derive(Debug, Clone)]
+enum Shape {
+    /// A short sum of sines is evaluated as it stands.
+    Waves(Vec<Wave>),
+    /// Many heights become a quintic Hermite interpolant of the trigonometric polynomial.
+    Samples(Vec<Height>),
+}
+
+impl RigidProfile {
+    /// A sum of sines on a period in m that all wavelengths divide.
+    pub fn from_waves(waves: &[Wave], period: f64) -> Self {
+        Self { period, shape: Shape::Waves(waves.to_vec()) }
+    }
+
+    /// Heights in m at equidistant points of a period in m: the trigonometric polynomial through
+    /// them. Between the points it is a quintic with the polynomial's heights, slopes and second
+    /// derivatives at both ends, so the second derivative is continuous.
+    pub fn from_heights(heights: &[f64], period: f64) -> Self {
+        let mut spectrum: Vec<Complex64> =
+            heights.iter().map(|z| Complex64::new(*z, 0.0)).collect();
+        let mut planner = FftPlanner::new();
+        planner.plan_fft_forward(heights.len()).process(&mut spectrum);
+        let derivative = |order: i32| {
+            let mut field = differentiate(&spectrum, period, order);
+            planner.plan_fft_inverse(heights.len()).process(&mut field);
+            field
+        };
+        let mut derivative = derivative;
+        let (slopes, curvatures) = (derivative(1), derivative(2));
+        let samples = heights
+            .iter()
+            .zip(slopes.iter().zip(&curvatures))
+            .map(|(height, (slope, curvature))| Height {
+                height: *height,
+                slope: slope.re,
+                curvature: curvature.re,
+            })
+            .collect();
+        Self { period, shape: Shape::Samples(samples) }
+    }
+
+    /// Length of the period in m.
+    pub fn period(&self) -> f64 {
+        self.period
+    }
+
+    /// Height and derivatives at any position `x` in m.
+    pub fn at(&self, x: f64) -> Height {
+        match &self.shape {
+            Shape::Waves(waves) => superposed(waves, x),
+            Shape::Samples(samples) => interpolated(samples, self.period, x),
+        }
+    }
+
+    /// Heights at `points` equidistant positions of one period, from `x = 0` on.
+    pub fn sample(&self, points: usize) -> Vec<f64> {
+        (0..points).map(|i| self.at(i as f64 * self.period / points as f64).height).collect()
+    }
+}
+
+fn superposed(waves: &[Wave], x: f64) -> Height {
+    let mut sum = Height { height: 0.0, slope: 0.0, curvature: 0.0 };
+    for wave in waves {
+        let q = TAU / wave.wavelength;
+        let (sine, cosine) = (q * x + wave.phase).sin_cos();
+        sum.height += wave.amplitude * sine;
+        sum.slope += wave.amplitude * q * cosine;
+        sum.curvature -= wave.amplitude * q * q * sine;
+    }
+    sum
+}
+
+fn differentiate(spectrum: &[Complex64], period: f64, order: i32) -> Vec<Complex64> {
+    let n = spectrum.len();
+    let factor = |k: usize| {
+        let wave = if 2 * k <= n { k as f64 } else { k as f64 - n as f64 };
+        // The highest wave of an even count has no slope at the points.
+        let wave = if 2 * k == n && order % 2 == 1 { 0.0 } else { wave };
+        Complex64::new(0.0, TAU * wave / period).powi(order) / n as f64
+    };
+    spectrum.iter().enumerate().map(|(k, z)| z * factor(k)).collect()
+}
+
+/// Quintic Hermite interpolation.
+fn interpolated(samples: &[Height], period: f64, x: f64) -> Height {
+    let n = samples.len();
+    let step = period / n as f64;
+    let place = (x / step).rem_euclid(n as f64);
+    let left = (place as usize).min(n - 1);
+    let t = place - left as f64;
+    let (a, b) = (samples[left], samples[(left + 1) % n]);
+    // Taylor polynomial from the left plus what it misses at the right end.
+    let (a1, a2) = (a.slope * step, a.curvature * step * step);
+    let (b1, b2) = (b.slope * step, b.curvature * step * step);
+    let height = b.height - a.height - a1 - 0.5 * a2;
+    let slope = b1 - a1 - a2;
+    let curvature = b2 - a2;
+    let cubic = 10.0 * height - 4.0 * slope + 0.5 * curvature;
+    let quartic = -15.0 * height + 7.0 * slope - curvature;
+    let quintic = 6.0 * height - 3.0 * slope + 0.5 * curvature;
+    Height {
+        height: a.height + t * (a1 + t * (0.5 * a2 + t * (cubic + t * (quartic + t * quintic)))),
+        slope: (a1 + t * (a2 + t * (3.0 * cubic + t * (4.0 * quartic + t * 5.0 * quintic)))) / step,
+        curvature: (a2 + t * (6.0 * cubic + t * (12.0 * quartic + t * 20.0 * quintic)))
+            / (step * step),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::wave;
+    use approx::assert_relative_eq;
+
+    fn waves() -> Vec<Wave> {
+        let wave = |wavelength, amplitude, phase| Wave { wavelength, amplitude, phase };
+        vec![wave(1.0, 0.1, 0.3), wave(0.5, 0.07, 2.0), wave(0.125, 0.01, 4.0)]
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_height() {
+        let exact = RigidProfile::from_waves(&waves(), 1.0);
+        let samples = RigidProfile::from_heights(&wave::sample(&waves(), 1.0, 64), 1.0);
+        let step = 1e-5;
+        for profile in [exact, samples] {
+            for x in [-0.3, 0.0, 0.123, 0.77, 1.4] {
+                let [before, at, after] =
+                    [x - step, x, x + step].map(|position| profile.at(position));
+                let slope = (after.height - before.height) / (2.0 * step);
+                let curvature = (after.slope - before.slope) / (2.0 * step);
+                // Differences err by the third derivative, 500 here and up to 1e5 for the quintic.
+                assert_relative_eq!(at.slope, slope, epsilon = 1e-6);
+                assert_relative_eq!(at.curvature, curvature, epsilon = 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn samples_of_resolved_waves_are_the_waves() {
+        let exact = RigidProfile::from_waves(&waves(), 1.0);
+        let errors = [64, 128].map(|points| {
+            let samples = RigidProfile::from_heights(&wave::sample(&waves(), 1.0, points), 1.0);
+            (0..1000)
+                .map(|i| f64::from(i) / 777.0)
+                .map(|x| (samples.at(x).height - exact.at(x).height).abs())
+                .fold(0.0, f64::max)
+        });
+        // Sixth order in the spacing.
+        assert!(errors[1] < errors[0] / 50.0 && errors[1] < 1e-8, "{errors:?}");
+    }
+}

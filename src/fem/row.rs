@@ -1,0 +1,400 @@
+//! One row of elements in the steady state: forces, and the tangent with its memory.
+//!
+//! The internal tensor of a branch at a point follows from the strains of the points of the same
+//! kind in all elements of the row, so a row is the smallest piece whose forces follow from its
+//! displacements.
+
+use super::filter::Filter;
+use super::mesh::{CENTRE, Element, POINTS};
+use crate::rubber::finite_strain::{
+    FiniteStrainRubber, IDENTITY, Rheology, Symmetric, contract, determinant, inverse, sandwich,
+};
+
+/// A tensor in the plane: components xx, xz, zx, zz.
+pub type Tensor = [f64; 4];
+
+/// What all rows share: the rubber and its memory at one speed.
+#[derive(Debug, Clone)]
+pub struct Material {
+    /// The rubber.
+    pub rubber: FiniteStrainRubber,
+    /// The filter of each branch.
+    pub filters: Vec<Filter>,
+}
+
+/// A row does not exist in the deformation asked for: an element is turned inside out, or an
+/// internal tensor is not positive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Inverted;
+
+/// Coefficients of the linearised law at a point,
+///
+/// ```text
+/// shear       δS = μ G δC G - Σ_k μ_k G_k δC_k G_k
+/// volumetric  δS = (c G:δC - Σ_k c_k G_k:δC_k) H - σ G δC G
+/// ```
+///
+/// with `H = G` but for the linear law, where all of them are unit tensors and σ vanishes.
+#[derive(Debug, Clone)]
+struct Point {
+    deformation: Tensor,
+    stress: Symmetric,
+    inverse: Symmetric,
+    volumetric: f64,
+    pressure: f64,
+}
+
+/// Deformation, stress and linearised law of a row of elements.
+#[derive(Debug, Clone)]
+pub struct Row {
+    element: Element,
+    columns: usize,
+    /// Points of one kind after another, columns first.
+    points: Vec<Point>,
+    /// `G_k` of each branch at each point; times `c_k` at the centre, in [`Self::relaxed`].
+    internal: Vec<Symmetric>,
+    /// `c_k` of each branch at the centres.
+    relaxed: Vec<f64>,
+}
+
+impl Row {
+    /// An undeformed row.
+    pub fn new(element: Element, columns: usize, branches: usize) -> Self {
+        let point = Point {
+            deformation: [1.0, 0.0, 0.0, 1.0],
+            stress: [0.0; 3],
+            inverse: IDENTITY,
+            volumetric: 0.0,
+            pressure: 0.0,
+        };
+        Self {
+            element,
+            columns,
+            points: vec![point; POINTS * columns],
+            internal: vec![IDENTITY; POINTS * columns * branches],
+            relaxed: vec![0.0; columns * branches],
+        }
+    }
+
+    /// Takes over the displacements of the nodes below and above and adds the internal forces
+    /// (N/m) on them.
+    ///
+    /// # Errors
+    /// [`Inverted`]; the forces are then meaningless.
+    pub fn deform(
+        &mut self,
+        material: &Material,
+        nodes: [&[f64]; 2],
+        forces: [&mut [f64]; 2],
+    ) -> Result<(), Inverted> {
+        let [below, above] = forces;
+        let mut strains = vec![IDENTITY; self.columns];
+        let branches = material.filters.len();
+        for kind in 0..POINTS {
+            let gradients = &self.element.gradients[kind];
+            let range = kind * self.columns..(kind + 1) * self.columns;
+            let points = &mut self.points[range];
+            for (column, (point, c)) in points.iter_mut().zip(&mut strains).enumerate() {
+                let mut f = displacement_gradient(nodes, gradients, column, self.columns);
+                f[0] += 1.0;
+                f[3] += 1.0;
+                if f[0] * f[3] - f[1] * f[2] <= 0.0 {
+                    return Err(Inverted);
+                }
+                point.deformation = f;
+                *c = right_cauchy_green(&f);
+            }
+            let first = kind * self.columns * branches;
+            let internal = &mut self.internal[first..first + self.columns * branches];
+            relax(&material.filters, &strains, internal);
+            let weight = self.element.weights[kind];
+            for (column, (point, c)) in points.iter_mut().zip(&strains).enumerate() {
+                let internal = &mut internal[column * branches..(column + 1) * branches];
+                if kind == CENTRE {
+                    let relaxed = &mut self.relaxed[column * branches..(column + 1) * branches];
+                    point.volumetric_law(&material.rubber, c, internal, relaxed)?;
+                } else {
+                    point.shear_law(&material.rubber, c, internal)?;
+                }
+                let traction = times(&point.deformation, &point.stress, weight);
+                scatter(&traction, gradients, column, self.columns, below, above);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the change of the forces for a change of the displacements, at the deformation taken
+    /// over last.
+    pub fn tangent(&self, material: &Material, nodes: [&[f64]; 2], forces: [&mut [f64]; 2]) {
+        let [below, above] = forces;
+        let branches = material.filters.len();
+        let mut changes = vec![[0.0; 4]; self.columns];
+        let mut strains = vec![[0.0; 3]; self.columns];
+        let mut memory = vec![[0.0; 3]; self.columns * branches];
+        for kind in 0..POINTS {
+            let gradients = &self.element.gradients[kind];
+            let points = &self.points[kind * self.columns..(kind + 1) * self.columns];
+            for (column, point) in points.iter().enumerate() {
+                let df = displacement_gradient(nodes, gradients, column, self.columns);
+                strains[column] = strain_change(&point.deformation, &df);
+                changes[column] = df;
+            }
+            relax(&material.filters, &strains, &mut memory);
+            let first = kind * self.columns * branches;
+            let internal = &self.internal[first..first + self.columns * branches];
+            let weight = self.element.weights[kind];
+            for (column, point) in points.iter().enumerate() {
+                let range = column * branches..(column + 1) * branches;
+                let (internal, changed) = (&internal[range.clone()], &memory[range.clone()]);
+                let stress = if kind == CENTRE {
+                    let relaxed = &self.relaxed[range];
+                    point.volumetric_tangent(&strains[column], internal, relaxed, changed)
+                } else {
+                    point.shear_tangent(&material.rubber, &strains[column], internal, changed)
+                };
+                let elastic = times(&point.deformation, &stress, weight);
+                let geometric = times(&changes[column], &point.stress, weight);
+                let traction = [0, 1, 2, 3].map(|i| elastic[i] + geometric[i]);
+                scatter(&traction, gradients, column, self.columns, below, above);
+            }
+        }
+    }
+
+    /// Stiffness of one element if every internal tensor followed its own point at once by the
+    /// fraction `follows` of each branch: the tangent without its memory.
+    pub fn local_stiffness(
+        &self,
+        material: &Material,
+        follows: &[f64],
+        column: usize,
+    ) -> [[f64; 8]; 8] {
+        let branches = material.filters.len();
+        let mut stiffness = [[0.0; 8]; 8];
+        let mut changed = vec![[0.0; 3]; branches];
+        for kind in 0..POINTS {
+            let gradients = &self.element.gradients[kind];
+            let weight = self.element.weights[kind];
+            let at = kind * self.columns + column;
+            let point = &self.points[at];
+            let internal = &self.internal[at * branches..(at + 1) * branches];
+            // Stress for a unit of each strain component.
+            let moduli = [0, 1, 2].map(|component| {
+                let mut strain = [0.0; 3];
+                strain[component] = 1.0;
+                for (changed, follows) in changed.iter_mut().zip(follows) {
+                    *changed = strain.map(|c| follows * c);
+                }
+                if kind == CENTRE {
+                    let relaxed = &self.relaxed[column * branches..(column + 1) * branches];
+                    point.volumetric_tangent(&strain, internal, relaxed, &changed)
+                } else {
+                    point.shear_tangent(&material.rubber, &strain, internal, &changed)
+                }
+            });
+            let f = &point.deformation;
+            for (node, gradient) in gradients.iter().enumerate() {
+                for direction in 0..2 {
+                    let mut df = [0.0; 4];
+                    df[2 * direction] = gradient[0];
+                    df[2 * direction + 1] = gradient[1];
+                    let strain = strain_change(f, &df);
+                    let stress = [0, 1, 2].map(|i| {
+                        moduli[0][i] * strain[0]
+                            + moduli[1][i] * strain[1]
+                            + moduli[2][i] * strain[2]
+                    });
+                    let elastic = times(f, &stress, weight);
+                    let geometric = times(&df, &point.stress, weight);
+                    for (other, gradient) in gradients.iter().enumerate() {
+                        for i in 0..2 {
+                            stiffness[2 * other + i][2 * node + direction] +=
+                                (elastic[2 * i] + geometric[2 * i]) * gradient[0]
+                                    + (elastic[2 * i + 1] + geometric[2 * i + 1]) * gradient[1];
+                        }
+                    }
+                }
+            }
+        }
+        stiffness
+    }
+}
+
+impl Point {
+    /// Stress and linearised law of the shear part; turns internal tensors into `G_k`.
+    fn shear_law(
+        &mut self,
+        rubber: &FiniteStrainRubber,
+        c: &Symmetric,
+        internal: &mut [Symmetric],
+    ) -> Result<(), Inverted> {
+        let neo_hookean = rubber.rheology == Rheology::NeoHookean;
+        let springs = &rubber.branches;
+        self.stress = rubber.shear_stress(&rubber.equilibrium, c, &IDENTITY);
+        for (spring, c_i) in springs.iter().zip(internal.iter_mut()) {
+            let stress = rubber.shear_stress(spring, c, c_i);
+            (0..3).for_each(|i| self.stress[i] += stress[i]);
+            if neo_hookean {
+                positive(c_i)?;
+                *c_i = inverse(c_i);
+            } else {
+                *c_i = IDENTITY;
+            }
+        }
+        self.inverse = if neo_hookean { inverse(c) } else { IDENTITY };
+        self.volumetric =
+            rubber.equilibrium.shear + springs.iter().map(|spring| spring.shear).sum::<f64>();
+        Ok(())
+    }
+
+    /// Stress and linearised law of the volumetric part; turns internal tensors into `G_k`.
+    fn volumetric_law(
+        &mut self,
+        rubber: &FiniteStrainRubber,
+        c: &Symmetric,
+        internal: &mut [Symmetric],
+        relaxed: &mut [f64],
+    ) -> Result<(), Inverted> {
+        let half = |volumetric: f64| 0.5 * volumetric;
+        self.stress = rubber.volumetric_stress(&rubber.equilibrium, c, &IDENTITY);
+        let neo_hookean = rubber.rheology == Rheology::NeoHookean;
+        let volume = if neo_hookean { determinant(c) } else { 1.0 };
+        self.volumetric = half(rubber.equilibrium.volumetric) * volume;
+        self.pressure = half(rubber.equilibrium.volumetric) * (volume - 1.0);
+        for ((spring, c_i), relaxed) in rubber.branches.iter().zip(internal).zip(relaxed) {
+            let stress = rubber.volumetric_stress(spring, c, c_i);
+            (0..3).for_each(|i| self.stress[i] += stress[i]);
+            let mut volume = volume;
+            if neo_hookean {
+                volume /= positive(c_i)?;
+                *c_i = inverse(c_i);
+            } else {
+                *c_i = IDENTITY;
+            }
+            *relaxed = half(spring.volumetric) * volume;
+            self.volumetric += *relaxed;
+            self.pressure += half(spring.volumetric) * (volume - 1.0);
+        }
+        self.inverse = if neo_hookean { inverse(c) } else { IDENTITY };
+        Ok(())
+    }
+
+    #[inline]
+    fn shear_tangent(
+        &self,
+        rubber: &FiniteStrainRubber,
+        strain: &Symmetric,
+        internal: &[Symmetric],
+        changed: &[Symmetric],
+    ) -> Symmetric {
+        let mut stress = sandwich(&self.inverse, strain).map(|s| self.volumetric * s);
+        for ((spring, g), change) in rubber.branches.iter().zip(internal).zip(changed) {
+            let relaxed = sandwich(g, change);
+            (0..3).for_each(|i| stress[i] -= spring.shear * relaxed[i]);
+        }
+        stress
+    }
+
+    #[inline]
+    fn volumetric_tangent(
+        &self,
+        strain: &Symmetric,
+        internal: &[Symmetric],
+        relaxed: &[f64],
+        changed: &[Symmetric],
+    ) -> Symmetric {
+        let mut pressure = self.volumetric * contract(&self.inverse, strain);
+        for ((c, g), change) in relaxed.iter().zip(internal).zip(changed) {
+            pressure -= c * contract(g, change);
+        }
+        let turned = sandwich(&self.inverse, strain);
+        [0, 1, 2].map(|i| pressure * self.inverse[i] - self.pressure * turned[i])
+    }
+}
+
+/// Determinant of an internal tensor, which must be positive definite.
+fn positive(internal: &Symmetric) -> Result<f64, Inverted> {
+    let d = determinant(internal);
+    if d > 0.0 && internal[0] > 0.0 { Ok(d) } else { Err(Inverted) }
+}
+
+/// Internal tensors of all branches (branches of a column together) from the strains of a row.
+fn relax(filters: &[Filter], strains: &[Symmetric], internal: &mut [Symmetric]) {
+    let n = strains.len();
+    let branches = filters.len();
+    for (k, filter) in filters.iter().enumerate() {
+        let mut state = [0, 1, 2].map(|i| filter.start(|column| strains[column][i], n));
+        let mut window = [strains[(n - 2) % n], strains[n - 1], strains[0]];
+        for column in 0..n {
+            let next = strains[if column + 1 == n { 0 } else { column + 1 }];
+            for i in 0..3 {
+                state[i] = filter.step(state[i], window[0][i], window[1][i], window[2][i], next[i]);
+            }
+            internal[column * branches + k] = state;
+            window = [window[1], window[2], next];
+        }
+    }
+}
+
+#[inline]
+fn displacement_gradient(
+    nodes: [&[f64]; 2],
+    gradients: &[[f64; 2]; 4],
+    column: usize,
+    columns: usize,
+) -> Tensor {
+    let right = if column + 1 == columns { 0 } else { column + 1 };
+    let mut f = [0.0; 4];
+    for (node, gradient) in gradients.iter().enumerate() {
+        let at = 2 * if node % 2 == 0 { column } else { right };
+        let (x, z) = (nodes[node / 2][at], nodes[node / 2][at + 1]);
+        f[0] += x * gradient[0];
+        f[1] += x * gradient[1];
+        f[2] += z * gradient[0];
+        f[3] += z * gradient[1];
+    }
+    f
+}
+
+#[inline]
+fn right_cauchy_green(f: &Tensor) -> Symmetric {
+    [f[0] * f[0] + f[2] * f[2], f[1] * f[1] + f[3] * f[3], f[0] * f[1] + f[2] * f[3]]
+}
+
+/// Change of the right Cauchy-Green tensor for a change of the deformation.
+#[inline]
+fn strain_change(f: &Tensor, df: &Tensor) -> Symmetric {
+    [
+        2.0 * (f[0] * df[0] + f[2] * df[2]),
+        2.0 * (f[1] * df[1] + f[3] * df[3]),
+        f[0] * df[1] + f[2] * df[3] + df[0] * f[1] + df[2] * f[3],
+    ]
+}
+
+/// Weighted product of a tensor with a symmetric one.
+#[inline]
+fn times(f: &Tensor, s: &Symmetric, weight: f64) -> Tensor {
+    [
+        weight * (f[0] * s[0] + f[1] * s[2]),
+        weight * (f[0] * s[2] + f[1] * s[1]),
+        weight * (f[2] * s[0] + f[3] * s[2]),
+        weight * (f[2] * s[2] + f[3] * s[1]),
+    ]
+}
+
+#[inline]
+fn scatter(
+    traction: &Tensor,
+    gradients: &[[f64; 2]; 4],
+    column: usize,
+    columns: usize,
+    below: &mut [f64],
+    above: &mut [f64],
+) {
+    let right = if column + 1 == columns { 0 } else { column + 1 };
+    for (node, gradient) in gradients.iter().enumerate() {
+        let at = 2 * if node % 2 == 0 { column } else { right };
+        let forces = if node < 2 { &mut *below } else { &mut *above };
+        forces[at] += traction[0] * gradient[0] + traction[1] * gradient[1];
+        forces[at + 1] += traction[2] * gradient[0] + traction[3] * gradient[1];
+    }
+}

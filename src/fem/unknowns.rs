@@ -1,0 +1,70 @@
+//! The unknowns of the steady problem.
+//!
+//! The upper edge moves as a whole in x, so its nodes share one unknown. The rest of the nodes
+//! have their own displacements. In the frame of the profile the field may be displaced along
+//! itself, together with the upper edge, without changing anything; the mean x displacement of
+//! the contact nodes is kept at zero instead of that of the upper edge, so that the contact stays
+//! at the same nodes however far the block shears.
+
+/// Positions of unknowns in a vector: node by node, the upper edge with z only, then the common
+/// x displacement of the upper edge.
+#[derive(Debug, Clone, Copy)]
+pub struct Unknowns {
+    /// Nodes in a row.
+    pub columns: usize,
+    /// Rows of elements.
+    pub rows: usize,
+}
+
+impl Unknowns {
+    /// Number of unknowns but the common displacement of the upper edge.
+    pub fn own(&self) -> usize {
+        self.upper_edge() + self.columns
+    }
+
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.own() + 1
+    }
+
+    /// First unknown of the upper edge.
+    pub fn upper_edge(&self) -> usize {
+        2 * self.columns * self.rows
+    }
+
+    /// Unknown of an entry of an array over the nodes; none for x at the upper edge.
+    pub fn of(&self, entry: usize) -> Option<usize> {
+        let upper = self.upper_edge();
+        match entry.checked_sub(upper) {
+            None => Some(entry),
+            Some(beyond) if beyond % 2 == 1 => Some(upper + beyond / 2),
+            Some(_) => None,
+        }
+    }
+
+    /// Array over the nodes from the unknowns.
+    pub fn expand(&self, unknowns: &[f64]) -> Vec<f64> {
+        let upper = self.upper_edge();
+        let common = unknowns[self.own()];
+        let mut nodes = Vec::with_capacity(upper + 2 * self.columns);
+        nodes.extend_from_slice(&unknowns[..upper]);
+        nodes.extend(unknowns[upper..self.own()].iter().flat_map(|z| [common, *z]));
+        nodes
+    }
+
+    /// Forces that belong to the unknowns, without the one of the upper edge along x, which is
+    /// what holds the block; in its place stands the mean x displacement of the contact nodes.
+    pub fn reduce(&self, forces: &[f64], mean_displacement: f64) -> Vec<f64> {
+        let upper = self.upper_edge();
+        let mut reduced = Vec::with_capacity(self.len());
+        reduced.extend_from_slice(&forces[..upper]);
+        reduced.extend(forces[upper..].iter().skip(1).step_by(2));
+        reduced.push(mean_displacement);
+        reduced
+    }
+
+    /// Mean x displacement of the contact nodes.
+    pub fn mean_contact_displacement(&self, nodes: &[f64]) -> f64 {
+        nodes[..2 * self.columns].iter().step_by(2).sum::<f64>() / self.columns as f64
+    }
+}
