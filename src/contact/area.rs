@@ -1,19 +1,13 @@
 //! The pressure for a wanted contact area.
 
 use super::{ContactError, ContactSolution, SlidingContact};
+use crate::numerics::bracket::{self, End};
 
 /// Most contacts solved in one search; the secant needs four to eight.
 const MOST_SOLVES: usize = 60;
 
 /// Bracket in `ln p` below which two pressures are the same.
 const SAME_PRESSURE: f64 = 1e-13;
-
-/// One end of the bracket: logarithms of the pressure and of the area over the wanted one.
-#[derive(Debug, Clone, Copy)]
-struct End {
-    log_pressure: f64,
-    error: f64,
-}
 
 impl SlidingContact {
     /// The contact at the pressure that gives the contact area `fraction`, to a relative
@@ -46,7 +40,7 @@ impl SlidingContact {
         if fraction == 1.0 {
             return self.solve(full);
         }
-        let upper = End { log_pressure: full.ln(), error: -fraction.ln() };
+        let upper = End { place: full.ln(), error: -fraction.ln() };
         Search { contact: self, fraction, tolerance, best: None }.run(upper)
     }
 
@@ -68,12 +62,12 @@ impl Search<'_> {
     fn run(mut self, mut upper: End) -> Result<ContactSolution, ContactError> {
         // As an elastic sine would have it (Westergaard 1939).
         let elastic = (0.5 * std::f64::consts::PI * self.fraction).sin().powi(2);
-        let mut guess = upper.log_pressure + elastic.ln();
+        let mut guess = upper.place + elastic.ln();
         let mut lower: Option<End> = None;
         let mut previous_error = 0.0;
         for _ in 0..MOST_SOLVES {
             let error = self.error_at(guess)?;
-            let new = End { log_pressure: guess, error };
+            let new = End { place: guess, error };
             if error.abs() <= self.tolerance.ln_1p() {
                 break;
             }
@@ -86,14 +80,14 @@ impl Search<'_> {
                 (None, false) => {
                     lower = Some(new);
                     // Up by the same rule: the known upper end may be far away.
-                    (guess - 2.2 * error + 0.1).min(0.5 * (guess + upper.log_pressure))
+                    (guess - 2.2 * error + 0.1).min(0.5 * (guess + upper.place))
                 }
                 (Some(low), _) => {
-                    narrow(low, &mut upper, new, previous_error * error > 0.0);
-                    if upper.log_pressure - low.log_pressure < SAME_PRESSURE {
+                    bracket::narrow(low, &mut upper, new, previous_error * error > 0.0);
+                    if upper.place - low.place < SAME_PRESSURE {
                         break;
                     }
-                    secant(low, &upper)
+                    bracket::secant(low, &upper)
                 }
             };
             previous_error = error;
@@ -128,24 +122,6 @@ impl Search<'_> {
             points: self.contact.points(),
         })
     }
-}
-
-/// Replaces the end of the bracket on the side of `new`. Where this happens twice running the error
-/// of the other end is scaled down, so that it does not stay for ever.
-fn narrow(lower: &mut End, upper: &mut End, new: End, again: bool) {
-    let (near, far) = if new.error > 0.0 { (upper, lower) } else { (lower, upper) };
-    if again {
-        let scale = 1.0 - new.error / near.error;
-        far.error *= if scale > 0.0 { scale } else { 0.5 };
-    }
-    *near = new;
-}
-
-/// Where the line through the ends vanishes, kept off the ends by a thousandth of the bracket.
-fn secant(lower: &End, upper: &End) -> f64 {
-    let share = lower.error / (lower.error - upper.error);
-    let share = if share.is_finite() { share.clamp(1e-3, 1.0 - 1e-3) } else { 0.5 };
-    lower.log_pressure + share * (upper.log_pressure - lower.log_pressure)
 }
 
 fn check(fraction: f64, tolerance: f64) -> Result<(), ContactError> {

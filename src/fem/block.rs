@@ -71,6 +71,17 @@ impl Block {
         Ok(gather(&parts?, row_len))
     }
 
+    /// Power in W/m that the branches turn into heat at displacements of the block.
+    pub fn dissipation(&self, displacements: &[f64]) -> f64 {
+        let row_len = self.row_len();
+        let rows = self.rows.par_iter().enumerate();
+        // In the order of the rows, whatever the number of threads.
+        let powers: Vec<f64> = rows
+            .map(|(r, row)| row.dissipation(&self.material, neighbours(displacements, r, row_len)))
+            .collect();
+        powers.iter().sum()
+    }
+
     /// Change of the internal forces for a change of the displacements.
     pub fn tangent(&self, changes: &[f64]) -> Vec<f64> {
         let row_len = self.row_len();

@@ -1,5 +1,7 @@
 //! The flow rule of a steady field: a periodic first-order filter along a row.
 
+use rustfft::num_complex::Complex64;
+
 /// Solves `v τ dC_i/dξ = C - C_i` with period `N h` for values at equidistant points:
 ///
 /// ```text
@@ -70,14 +72,14 @@ impl Filter {
         self.decay * state + (w[0] * c0 + w[1] * c1 + w[2] * c2 + w[3] * c3)
     }
 
-    /// `e^{-α}` and the four weights.
-    pub fn coefficients(&self) -> (f64, [f64; 4]) {
-        (self.decay, self.weights)
-    }
-
-    /// Points after which the memory is below round-off.
-    pub fn memory(&self) -> usize {
-        self.memory
+    /// Response to `e^{iθn}`; tends to `1 / (1 + i q v τ)` for a small `θ = q h`.
+    pub fn response(&self, angle: f64) -> Complex64 {
+        if angle == 0.0 {
+            return Complex64::ONE;
+        }
+        let back = Complex64::cis(-angle);
+        let [w0, w1, w2, w3] = self.weights;
+        (w0 * back * back + w1 * back + w2 + w3 * back.conj()) / (1.0 - self.decay * back)
     }
 }
 
@@ -107,7 +109,6 @@ fn moments(alpha: f64) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rustfft::num_complex::Complex64;
     use std::f64::consts::TAU;
 
     /// The whole periodic sweep.

@@ -12,6 +12,10 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 
+/// Wavenumber times depth at which the stiffness of a row is taken: on the stiff side, since the
+/// contact and the stresses then lose less of their weight than the softest waves gain.
+const WAVES_AT_DEPTH: f64 = 6.0;
+
 /// Stiffness of one contact node: its 2×2 block.
 pub type NodeStiffness = [[f64; 2]; 2];
 
@@ -53,13 +57,17 @@ impl LocalPattern {
         let follows = (0..mesh.rows())
             .map(|row| {
                 let depth = 0.5 * (heights[row] + heights[row + 1]);
-                let q = (std::env::var("QF").map(|f| f.parse::<f64>().unwrap()).unwrap_or(1.0)
-                    / depth)
-                    .max(std::f64::consts::TAU / mesh.period);
+                let q = WAVES_AT_DEPTH / depth;
                 relaxation_lengths.iter().map(|length| 1.0 / (1.0 + (q * length).powi(2))).collect()
             })
             .collect();
         Self { unknowns, symbolic, argsort, symbolic_lu, follows }
+    }
+
+    /// Fraction by which the internal tensors of each branch follow their point, for each row of
+    /// elements.
+    pub fn follows(&self) -> &[Vec<f64>] {
+        &self.follows
     }
 
     /// Factorises the local tangent of the block with the stiffness of its contact nodes.

@@ -1,7 +1,9 @@
 //! Finite deformation.
 pub mod block;
+pub mod error;
 pub mod filter;
 pub mod local;
+pub mod memory;
 pub mod mesh;
 pub mod profile;
 pub mod row;

@@ -69,6 +69,22 @@ impl RigidProfile {
         self.period
     }
 
+    /// How many of the shortest waves that matter lie on the period: slower ones make up 99 % of the
+    /// mean square slope.
+    pub fn shortest_waves(&self) -> f64 {
+        match &self.shape {
+            Shape::Waves(waves) => {
+                let shortest = waves
+                    .iter()
+                    .filter(|wave| wave.amplitude != 0.0)
+                    .map(|wave| wave.wavelength)
+                    .fold(self.period, f64::min);
+                (self.period / shortest).round()
+            }
+            Shape::Samples(samples) => shortest_waves(samples),
+        }
+    }
+
     /// Height and derivatives at any position `x` in m.
     pub fn at(&self, x: f64) -> Height {
         match &self.shape {
@@ -81,6 +97,21 @@ impl RigidProfile {
     pub fn sample(&self, points: usize) -> Vec<f64> {
         (0..points).map(|i| self.at(i as f64 * self.period / points as f64).height).collect()
     }
+}
+
+fn shortest_waves(samples: &[Height]) -> f64 {
+    let mut slopes: Vec<Complex64> =
+        samples.iter().map(|sample| Complex64::new(sample.slope, 0.0)).collect();
+    FftPlanner::new().plan_fft_forward(slopes.len()).process(&mut slopes);
+    let powers: Vec<f64> =
+        slopes[..=samples.len() / 2].iter().map(|slope| slope.norm_sqr()).collect();
+    let total: f64 = powers.iter().sum();
+    let mut sum = 0.0;
+    let shortest = powers.iter().position(|power| {
+        sum += power;
+        sum >= 0.99 * total
+    });
+    shortest.unwrap_or(1).max(1) as f64
 }
 
 fn superposed(waves: &[Wave], x: f64) -> Height {

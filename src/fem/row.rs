@@ -160,6 +160,32 @@ impl Row {
         }
     }
 
+    /// Power in W/m that the branches turn into heat at displacements of the row.
+    pub fn dissipation(&self, material: &Material, nodes: [&[f64]; 2]) -> f64 {
+        let branches = material.filters.len();
+        let mut internal = vec![[0.0; 3]; self.columns * branches];
+        let mut power = 0.0;
+        for (kind, gradients) in self.element.gradients.iter().enumerate() {
+            let strains: Vec<Symmetric> = (0..self.columns)
+                .map(|column| {
+                    let mut f = displacement_gradient(nodes, gradients, column, self.columns);
+                    f[0] += 1.0;
+                    f[3] += 1.0;
+                    right_cauchy_green(&f)
+                })
+                .collect();
+            relax(&material.filters, &strains, &mut internal);
+            for (c, internal) in strains.iter().zip(internal.chunks_exact(branches.max(1))) {
+                for (spring, c_i) in material.rubber.branches.iter().zip(internal) {
+                    let (shear, volumetric) = material.rubber.dissipation(spring, c, c_i);
+                    let part = if kind == CENTRE { volumetric } else { shear };
+                    power += self.element.weights[kind] * part;
+                }
+            }
+        }
+        power
+    }
+
     /// Stiffness of one element if every internal tensor followed its own point at once by the
     /// fraction `follows` of each branch: the tangent without its memory.
     pub fn local_stiffness(

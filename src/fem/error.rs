@@ -1,0 +1,78 @@
+//! What can go wrong in a finite-deformation contact.
+
+use crate::rubber::RubberError;
+
+/// Why there is no solution to report.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FemError {
+    /// The rubber's numbers are no rubber, or none for finite elements.
+    #[error(transparent)]
+    Rubber(#[from] RubberError),
+    /// A number outside its range.
+    #[error("{quantity} is {value}, it must be {range}")]
+    OutOfRange {
+        /// Which number, with its unit.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range it must lie in.
+        range: &'static str,
+    },
+    /// The path of solutions ended before the wanted pressure.
+    #[error(
+        "no finite-deformation solution at {:.4} MPa on {columns} columns: the path ended {}; \
+         try other --columns, or a pressure below that", .wanted / 1e6, .reached.describe()
+    )]
+    PathEnded {
+        /// The wanted mean pressure in Pa.
+        wanted: f64,
+        /// Columns of the mesh.
+        columns: usize,
+        /// The last point that converged.
+        reached: PathEnd,
+    },
+    /// No pressure was found that gives the wanted contact area.
+    #[error(
+        "no pressure gives the contact area fraction {wanted} on {columns} columns: the nearest \
+         found is {found} at {:.6} MPa; use more columns for a smaller area", .pressure / 1e6
+    )]
+    AreaNotReached {
+        /// The wanted contact area fraction.
+        wanted: f64,
+        /// The nearest one found.
+        found: f64,
+        /// Its mean pressure in Pa.
+        pressure: f64,
+        /// Columns of the mesh.
+        columns: usize,
+    },
+}
+
+/// The last converged point of a path of growing pressure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PathEnd {
+    /// Not even the first, slight contact converged.
+    NotStarted,
+    /// A smaller pressure converged.
+    At {
+        /// Its mean pressure in Pa.
+        pressure: f64,
+        /// Its friction coefficient.
+        friction_coefficient: f64,
+        /// Its contact area fraction.
+        contact_area_fraction: f64,
+    },
+}
+
+impl PathEnd {
+    fn describe(&self) -> String {
+        match self {
+            Self::NotStarted => "before the first contact".into(),
+            Self::At { pressure, friction_coefficient, contact_area_fraction } => format!(
+                "at {:.4} MPa, where friction is {friction_coefficient:.4} and the contact area \
+                 fraction {contact_area_fraction:.4}",
+                pressure / 1e6
+            ),
+        }
+    }
+}

@@ -1,0 +1,419 @@
+//! The memory's share in the tangent, in Fourier space: it turns the local tangent into a
+//! preconditioner of the whole one.
+//!
+//! Linearised about the mean deformation of each row, the block is homogeneous along the rows,
+//! and each wavenumber becomes a system of its own, tridiagonal over the rows of nodes. With `F`
+//! such a block with its full memory, `F_0` one with the local stiffness of
+//! [`super::local`] and `B` the stiffness of the contact, the preconditioner is
+//!
+//! ```text
+//! P⁻¹ = K_local⁻¹ (F_0 + B) (F + B)⁻¹ = K_local⁻¹ (1 + (F_0 - F) (F + B)⁻¹)
+//! ```
+//!
+//! It is exact for small deformations, where `K_local = F_0 + B`, and for rubber without memory,
+//! where `F = F_0`. The contact enters `(F + B)⁻¹` through the displacements of the contact nodes
+//! alone: a dense system of `2 N` unknowns.
+
+use super::block::Block;
+use super::local::NodeStiffness;
+use super::mesh::{CENTRE, Element};
+use super::unknowns::Unknowns;
+use crate::rubber::Rheology;
+use crate::rubber::finite_strain::{IDENTITY, Symmetric, inverse};
+use faer::Mat;
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use nalgebra::{Matrix2, Vector2};
+use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+type Block2 = Matrix2<Complex64>;
+type Pair2 = Vector2<Complex64>;
+
+/// Forces on the lower and the upper row of nodes by displacements of both.
+#[derive(Clone, Copy)]
+struct RowStiffness([[Block2; 2]; 2]);
+
+/// The homogeneous block at all wavenumbers, with its memory, and factorised.
+pub struct Memory {
+    unknowns: Unknowns,
+    waves: usize,
+    forward: Arc<dyn Fft<f64>>,
+    backward: Arc<dyn Fft<f64>>,
+    /// `F_0 - F` of each row of elements and wavenumber.
+    difference: Vec<RowStiffness>,
+    /// Inverse pivots of each row of nodes and wavenumber, eliminated from the upper edge.
+    pivots: Vec<Block2>,
+    /// Couplings of a row of nodes with the one above, and back.
+    couplings: Vec<[Block2; 2]>,
+    /// Stiffness of the contact that is part of the factors, on all contact nodes alike.
+    mean_contact: f64,
+    /// Compliance of the contact nodes: displacement at node `j` by a force at node 0.
+    compliance: Vec<[[f64; 2]; 2]>,
+    /// Forces by the displacement of the upper edge on the row below it, and on itself.
+    edge: [Pair2; 2],
+}
+
+/// The contact at one Newton step.
+pub struct MemoryContact<'a> {
+    memory: &'a Memory,
+    /// Stiffness of each contact node beyond the mean one.
+    stiffness: Vec<NodeStiffness>,
+    system: Option<PartialPivLu<f64>>,
+    edge_response: Vec<Pair2>,
+}
+
+/// The mean state of a row of elements.
+struct MeanState {
+    deformation: [f64; 4],
+    inverse: Symmetric,
+}
+
+impl Memory {
+    /// Linearises the block about the row means of displacements.
+    pub fn new(
+        block: &Block,
+        displacements: &[f64],
+        follows: &[Vec<f64>],
+        mean_contact: f64,
+    ) -> Self {
+        let mesh = block.mesh();
+        let unknowns = Unknowns { columns: mesh.columns, rows: mesh.rows() };
+        let waves = mesh.columns / 2 + 1;
+        let mut planner = FftPlanner::new();
+        let material = block.material();
+        let rubber = &material.rubber;
+        let means: Vec<f64> = displacements
+            .chunks_exact(block.row_len())
+            .map(|row| row.iter().step_by(2).sum::<f64>() / mesh.columns as f64)
+            .collect();
+        let mut difference = Vec::with_capacity(mesh.rows() * waves);
+        let mut stiffness = Vec::with_capacity(mesh.rows() * waves);
+        for row in 0..mesh.rows() {
+            let element = mesh.element(row);
+            let height = mesh.row_heights[row];
+            let state = MeanState::new(block, (means[row + 1] - means[row]) / height);
+            for wave in 0..waves {
+                let angle = TAU * wave as f64 / mesh.columns as f64;
+                let mut full = [
+                    Complex64::from(rubber.equilibrium.shear),
+                    Complex64::from(0.5 * rubber.equilibrium.volumetric),
+                ];
+                let mut local = full;
+                for ((spring, filter), follows) in
+                    rubber.branches.iter().zip(&material.filters).zip(&follows[row])
+                {
+                    let response = filter.response(angle);
+                    let moduli = [spring.shear, 0.5 * spring.volumetric];
+                    for (i, modulus) in moduli.into_iter().enumerate() {
+                        full[i] += modulus * (1.0 - response);
+                        local[i] += modulus * (1.0 - follows);
+                    }
+                }
+                let with = state.stiffness(&element, angle, full);
+                let without = state.stiffness(&element, angle, local);
+                let mut change = without;
+                for i in 0..2 {
+                    for j in 0..2 {
+                        change.0[i][j] -= with.0[i][j];
+                    }
+                }
+                difference.push(change);
+                stiffness.push(with);
+            }
+        }
+        let mut memory = Self {
+            unknowns,
+            waves,
+            forward: planner.plan_fft_forward(mesh.columns),
+            backward: planner.plan_fft_inverse(mesh.columns),
+            difference,
+            pivots: Vec::new(),
+            couplings: Vec::new(),
+            mean_contact,
+            compliance: Vec::new(),
+            edge: [Pair2::zeros(); 2],
+        };
+        memory.factorise(&stiffness);
+        memory.compliance = memory.contact_compliance();
+        memory
+    }
+
+    /// Block elimination from the upper edge down.
+    fn factorise(&mut self, stiffness: &[RowStiffness]) {
+        let (rows, waves) = (self.unknowns.rows, self.waves);
+        let mut pivots = vec![Block2::zeros(); (rows + 1) * waves];
+        let mut couplings = vec![[Block2::zeros(); 2]; rows * waves];
+        // The upper edge moves as a whole: its waves have no x displacement.
+        let last = &stiffness[(rows - 1) * waves];
+        self.edge = [last.0[0][1].column(0).into(), last.0[1][1].column(0).into()];
+        for wave in 0..waves {
+            let at = |row: usize| &stiffness[row * waves + wave].0;
+            let mut diagonal = at(rows - 1)[1][1];
+            diagonal.set_row(0, &nalgebra::RowVector2::new(Complex64::ONE, Complex64::ZERO));
+            diagonal.set_column(0, &Pair2::new(Complex64::ONE, Complex64::ZERO));
+            for row in (0..=rows).rev() {
+                let inverse = diagonal.try_inverse().unwrap_or_else(Block2::zeros);
+                pivots[row * waves + wave] = inverse;
+                if row == 0 {
+                    break;
+                }
+                let [mut up, mut down] = [at(row - 1)[0][1], at(row - 1)[1][0]];
+                if row == rows {
+                    up.set_column(0, &Pair2::zeros());
+                    down.set_row(0, &nalgebra::RowVector2::zeros());
+                }
+                couplings[(row - 1) * waves + wave] = [up, down];
+                diagonal = at(row - 1)[0][0] - up * inverse * down;
+                if row > 1 {
+                    diagonal += at(row - 2)[1][1];
+                } else {
+                    diagonal[(1, 1)] += self.mean_contact;
+                }
+            }
+        }
+        (self.pivots, self.couplings) = (pivots, couplings);
+    }
+
+    /// Solves with the factors, for all wavenumbers.
+    fn solve(&self, right: &mut [Pair2]) {
+        let (rows, waves) = (self.unknowns.rows, self.waves);
+        for row in (0..rows).rev() {
+            let (below, above) = right.split_at_mut((row + 1) * waves);
+            let below = &mut below[row * waves..];
+            for wave in 0..waves {
+                let eliminated = self.pivots[(row + 1) * waves + wave] * above[wave];
+                below[wave] -= self.couplings[row * waves + wave][0] * eliminated;
+            }
+        }
+        for wave in 0..waves {
+            right[wave] = self.pivots[wave] * right[wave];
+        }
+        for row in 1..=rows {
+            let (below, above) = right.split_at_mut(row * waves);
+            let below = &below[(row - 1) * waves..];
+            for wave in 0..waves {
+                let coupled = self.couplings[(row - 1) * waves + wave][1] * below[wave];
+                above[wave] = self.pivots[row * waves + wave] * (above[wave] - coupled);
+            }
+        }
+    }
+
+    fn contact_compliance(&self) -> Vec<[[f64; 2]; 2]> {
+        let columns = self.unknowns.columns;
+        let mut compliance = vec![[[0.0; 2]; 2]; columns];
+        for direction in 0..2 {
+            let mut spectrum = vec![Pair2::zeros(); self.waves * (self.unknowns.rows + 1)];
+            for wave in &mut spectrum[..self.waves] {
+                wave[direction] = Complex64::ONE;
+            }
+            self.solve(&mut spectrum);
+            let mut nodes = vec![0.0; 2 * columns];
+            self.to_nodes(&spectrum[..self.waves], &mut nodes);
+            for (j, entry) in compliance.iter_mut().enumerate() {
+                entry[0][direction] = nodes[2 * j];
+                entry[1][direction] = nodes[2 * j + 1];
+            }
+        }
+        compliance
+    }
+
+    /// Spectrum of a row of nodes, by one complex transform of `x + i z`.
+    fn to_waves(&self, nodes: &[f64], spectrum: &mut [Pair2]) {
+        let n = self.unknowns.columns;
+        let mut packed: Vec<Complex64> =
+            nodes.chunks_exact(2).map(|node| Complex64::new(node[0], node[1])).collect();
+        self.forward.process(&mut packed);
+        for (k, wave) in spectrum.iter_mut().enumerate() {
+            let (plus, minus) = (packed[k], packed[(n - k) % n].conj());
+            let z = 0.5 * (plus - minus);
+            *wave = Pair2::new(0.5 * (plus + minus), Complex64::new(z.im, -z.re));
+        }
+    }
+
+    /// Row of nodes from its spectrum.
+    fn to_nodes(&self, spectrum: &[Pair2], nodes: &mut [f64]) {
+        let n = self.unknowns.columns;
+        let mut packed = vec![Complex64::ZERO; n];
+        for (k, wave) in spectrum.iter().enumerate() {
+            let (x, z) = (wave[0], wave[1]);
+            packed[k] = x + Complex64::I * z;
+            if k > 0 && 2 * k < n {
+                packed[n - k] = x.conj() + Complex64::I * z.conj();
+            } else {
+                packed[k] = Complex64::new(x.re, z.re);
+            }
+        }
+        self.backward.process(&mut packed);
+        for (node, value) in nodes.chunks_exact_mut(2).zip(&packed) {
+            node[0] = value.re / n as f64;
+            node[1] = value.im / n as f64;
+        }
+    }
+
+    /// `F_0 - F` times a field.
+    fn local_less_full(&self, field: &[Pair2]) -> Vec<Pair2> {
+        let (rows, waves) = (self.unknowns.rows, self.waves);
+        let mut forces = vec![Pair2::zeros(); field.len()];
+        for row in 0..rows {
+            for wave in 0..waves {
+                let (lower, upper) = (row * waves + wave, (row + 1) * waves + wave);
+                let blocks = &self.difference[lower].0;
+                forces[lower] += blocks[0][0] * field[lower] + blocks[0][1] * field[upper];
+                forces[upper] += blocks[1][0] * field[lower] + blocks[1][1] * field[upper];
+            }
+        }
+        forces
+    }
+
+    /// Adds the contact of one Newton step: the stiffness of each contact node.
+    pub fn with_contact(&self, contact: &[NodeStiffness]) -> MemoryContact<'_> {
+        let n = self.unknowns.columns;
+        let stiffness: Vec<NodeStiffness> = contact
+            .iter()
+            .map(|k| [[k[0][0], k[0][1]], [k[1][0], k[1][1] - self.mean_contact]])
+            .collect();
+        let system = (n <= MOST_DENSE_COLUMNS).then(|| {
+            let entry = |i: usize, j: usize| {
+                let s = &self.compliance[(i / 2 + n - j / 2) % n][i % 2];
+                let k = &stiffness[j / 2];
+                let product = s[0] * k[0][j % 2] + s[1] * k[1][j % 2];
+                if i == j { product + 1.0 } else { product }
+            };
+            Mat::from_fn(2 * n, 2 * n, entry).partial_piv_lu()
+        });
+        let mut contact =
+            MemoryContact { memory: self, stiffness, system, edge_response: Vec::new() };
+        let mut edge = vec![Pair2::zeros(); self.waves * (self.unknowns.rows + 1)];
+        let top = self.unknowns.rows * self.waves;
+        edge[top - self.waves] = -self.edge[0] * Complex64::from(n as f64);
+        edge[top] = -self.edge[1] * Complex64::from(n as f64);
+        edge[top][0] = Complex64::ZERO;
+        contact.solve_own(&mut edge);
+        edge[top][0] = Complex64::from(n as f64);
+        contact.edge_response = edge;
+        contact
+    }
+}
+
+/// Beyond this the dense system of the contact nodes costs more than it saves.
+const MOST_DENSE_COLUMNS: usize = 1024;
+
+impl MemoryContact<'_> {
+    fn solve_own(&self, field: &mut [Pair2]) {
+        let memory = self.memory;
+        let n = memory.unknowns.columns;
+        memory.solve(field);
+        let Some(system) = &self.system else { return };
+        let mut touching = vec![0.0; 2 * n];
+        memory.to_nodes(&field[..memory.waves], &mut touching);
+        let column = faer::MatMut::from_column_major_slice_mut(&mut touching, 2 * n, 1);
+        system.solve_in_place(column);
+        for (node, k) in touching.chunks_exact_mut(2).zip(&self.stiffness) {
+            let (x, z) = (node[0], node[1]);
+            node[0] = k[0][0] * x + k[0][1] * z;
+            node[1] = k[1][0] * x + k[1][1] * z;
+        }
+        let mut correction = vec![Pair2::zeros(); field.len()];
+        memory.to_waves(&touching, &mut correction[..memory.waves]);
+        memory.solve(&mut correction);
+        for (wave, correction) in field.iter_mut().zip(&correction) {
+            *wave -= correction;
+        }
+    }
+
+    /// Adds `(F_0 - F) (F + B)⁻¹` of reduced forces to them.
+    pub fn correct(&self, reduced: &mut [f64]) {
+        let memory = self.memory;
+        let (unknowns, waves) = (memory.unknowns, memory.waves);
+        let own = unknowns.own();
+        let mut nodes = unknowns.expand(reduced);
+        let top = unknowns.upper_edge();
+        nodes[top..].iter_mut().step_by(2).for_each(|x| *x = 0.0);
+        let row_len = 2 * unknowns.columns;
+        let mut field = vec![Pair2::zeros(); waves * (unknowns.rows + 1)];
+        for (nodes, waves) in nodes.chunks_exact(row_len).zip(field.chunks_exact_mut(waves)) {
+            memory.to_waves(nodes, waves);
+        }
+        self.solve_own(&mut field);
+        let missing = Complex64::from(reduced[own] * unknowns.columns as f64) - field[0][0];
+        let common = missing / self.edge_response[0][0];
+        for (wave, response) in field.iter_mut().zip(&self.edge_response) {
+            *wave += response * common;
+        }
+        let forces = memory.local_less_full(&field);
+        for (nodes, waves) in nodes.chunks_exact_mut(row_len).zip(forces.chunks_exact(waves)) {
+            memory.to_nodes(waves, nodes);
+        }
+        for (reduced, force) in reduced.iter_mut().zip(unknowns.reduce(&nodes, 0.0)) {
+            *reduced += force;
+        }
+    }
+}
+
+impl MeanState {
+    /// The state with a vertical slope of the mean displacements, at rest.
+    fn new(block: &Block, shear: f64) -> Self {
+        let rubber = &block.material().rubber;
+        // At constant volume and without stress: row means of a contact that is strongly deformed
+        // would have a pressure that is nowhere in the row.
+        let deformation = [1.0, shear, 0.0, 1.0];
+        let c = [1.0, 1.0 + shear * shear, shear];
+        let inverse = match rubber.rheology {
+            Rheology::NeoHookean => inverse(&c),
+            Rheology::Linear => IDENTITY,
+        };
+        Self { deformation, inverse }
+    }
+
+    /// Stiffness of a row at one wavenumber with complex moduli μ and c.
+    fn stiffness(&self, element: &Element, angle: f64, moduli: [Complex64; 2]) -> RowStiffness {
+        let phase = Complex64::cis(angle);
+        let mut stiffness = RowStiffness([[Block2::zeros(); 2]; 2]);
+        let f = &self.deformation;
+        for (kind, gradients) in element.gradients.iter().enumerate() {
+            let weight = element.weights[kind];
+            let gradient = [0, 2].map(|node| {
+                [0, 1].map(|c| gradients[node][c] + gradients[node + 1][c] * phase)
+            });
+            for (from, by) in gradient.iter().enumerate() {
+                for direction in 0..2 {
+                    // δF = e_direction ⊗ gradient.
+                    let row = [f[2 * direction], f[2 * direction + 1]];
+                    let strain = [
+                        2.0 * row[0] * by[0],
+                        2.0 * row[1] * by[1],
+                        row[0] * by[1] + row[1] * by[0],
+                    ];
+                    let stress = if kind == CENTRE {
+                        let trace = self.inverse[0] * strain[0]
+                            + self.inverse[1] * strain[1]
+                            + 2.0 * self.inverse[2] * strain[2];
+                        self.inverse.map(|g| moduli[1] * trace * g)
+                    } else {
+                        sandwich(&self.inverse, &strain).map(|s| moduli[0] * s)
+                    };
+                    for i in 0..2 {
+                        let traction = [
+                            f[2 * i] * stress[0] + f[2 * i + 1] * stress[2],
+                            f[2 * i] * stress[2] + f[2 * i + 1] * stress[1],
+                        ];
+                        for (to, test) in gradient.iter().enumerate() {
+                            stiffness.0[to][from][(i, direction)] += weight
+                                * (traction[0] * test[0].conj() + traction[1] * test[1].conj());
+                        }
+                    }
+                }
+            }
+        }
+        stiffness
+    }
+}
+
+/// The product `G X G` with a complex strain.
+fn sandwich(g: &Symmetric, x: &[Complex64; 3]) -> [Complex64; 3] {
+    let (xx, xz) = (x[0] * g[0] + x[2] * g[2], x[2] * g[0] + x[1] * g[2]);
+    let (zx, zz) = (x[0] * g[2] + x[2] * g[1], x[2] * g[2] + x[1] * g[1]);
+    [xx * g[0] + xz * g[2], zx * g[2] + zz * g[1], xx * g[2] + xz * g[1]]
+}

@@ -1,0 +1,252 @@
+//! Steady sliding of a block of rubber over a rigid profile, at finite deformation.
+//!
+//! In the frame of the profile the field stands still: `x = X + v t + u(ξ, Z)` with
+//! `ξ = X + v t`, and the flow rule of a branch becomes `v dC_i/dξ = (C - C_i) / τ` along each row
+//! of the mesh, which [`super::filter`] solves for all points of a row at once. One Newton solve
+//! replaces the some thousand time steps after which a transient solution is steady.
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `path` | continuation: growing pressure, finer meshes, shifted rows |
+//! | `newton` | one pressure on one mesh: barrier and active set, GMRES |
+//! | `state`, `transfer` | the unknown fields, and how they are taken to another mesh |
+//! | [`solution`] | friction, area, separation, dissipation and fields of a solved contact |
+//! | `area` | the pressure that gives a wanted contact area |
+
+mod area;
+mod newton;
+mod path;
+pub mod solution;
+mod state;
+mod transfer;
+
+use super::error::{FemError, PathEnd};
+use super::mesh::{Grading, Mesh};
+use super::profile::RigidProfile;
+use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
+use newton::Stuck;
+use path::{Path, Scene};
+use solution::SteadySolution;
+use state::Heights;
+use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+/// The block and its mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlockOptions {
+    /// Elements over the period.
+    pub columns: usize,
+    /// Height of the block over the period.
+    pub height_ratio: f64,
+    /// Growth of the rows away from the contact.
+    pub grading: Grading,
+}
+
+impl BlockOptions {
+    /// The block of the thesis, of height 0.75 L, with square elements at the contact and rows
+    /// that grow by a fifth: friction then differs by 0.1 % from that of equally high rows.
+    pub fn new(columns: usize) -> Self {
+        Self { columns, height_ratio: 0.75, grading: Grading { first: 1.0, growth: 1.2 } }
+    }
+}
+
+/// Columns for which a contact can be asked.
+pub const COLUMNS_RANGE: RangeInclusive<usize> = 8..=1 << 16;
+/// Block heights, in periods, for which a contact can be asked.
+pub const HEIGHT_RANGE: RangeInclusive<f64> = 0.1..=10.0;
+
+/// Columns of the coarsest mesh on the shortest wave of the profile.
+const COARSEST_PER_WAVE: f64 = 24.0;
+/// Ratio of the columns of neighbouring meshes. With twice the columns the small waves that a
+/// coarse mesh leaves between its nodes become stresses from which Newton's method does not
+/// recover.
+const REFINEMENT: f64 = 1.5;
+
+/// A block of rubber that slides at constant speed over a rigid periodic profile: plane strain,
+/// finite linear viscoelasticity, frictionless contact. The upper edge carries the dead pressure
+/// `p` per undeformed length and moves as a whole; lateral edges are periodic.
+///
+/// Solutions for further pressures go on from those found before, which saves most of the work;
+/// they agree with those from scratch within the residual.
+///
+/// ```
+/// use asperity::fem::profile::RigidProfile;
+/// use asperity::fem::steady::{BlockOptions, SteadyContact};
+/// use asperity::rubber::{Rheology, Rubber};
+/// use asperity::surface::Wave;
+///
+/// let wave = Wave { wavelength: 6.25e-5, amplitude: 1.867e-5, phase: 0.0 };
+/// let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
+/// let rubber = Rubber::table_2_1();
+/// let options = BlockOptions::new(32);
+/// let mut contact = SteadyContact::new(&rubber, Rheology::NeoHookean, 0.01, profile, options)?;
+/// let solution = contact.solve(3e5)?;
+/// assert!((solution.friction_coefficient - 0.32).abs() < 0.01);
+/// # Ok::<(), asperity::fem::error::FemError>(())
+/// ```
+pub struct SteadyContact {
+    scene: Arc<Scene>,
+    options: BlockOptions,
+    speed: f64,
+    path: Option<Path>,
+}
+
+impl SteadyContact {
+    /// Sets up the contact for a positive `speed` in m/s.
+    ///
+    /// # Errors
+    /// [`FemError::Rubber`]; [`FemError::OutOfRange`] for a speed, a number of columns, a height or
+    /// a grading outside its range.
+    pub fn new(
+        rubber: &Rubber,
+        rheology: Rheology,
+        speed: f64,
+        profile: RigidProfile,
+        options: BlockOptions,
+    ) -> Result<Self, FemError> {
+        let finite = FiniteStrainRubber::new(rubber, rheology)?;
+        check(speed, &profile, &options)?;
+        let relaxation_lengths =
+            finite.branches.iter().map(|branch| speed * branch.relaxation_time).collect();
+        let period = profile.period();
+        let modulus = |q: f64| rubber.reduced_modulus(q * speed).norm();
+        let scene = Scene {
+            rubber: finite,
+            relaxation_lengths,
+            heights: Heights::of(&profile, 8 * options.columns),
+            profile,
+            soft_modulus: modulus(TAU / period),
+            stiff_modulus: modulus(PI * options.columns as f64 / period),
+        };
+        Ok(Self { scene: Arc::new(scene), options, speed, path: None })
+    }
+
+    /// The contact at the mean pressure `p` in Pa.
+    ///
+    /// # Errors
+    /// [`FemError::OutOfRange`] for a pressure that is not positive and finite;
+    /// [`FemError::PathEnded`] with the last point that converged.
+    pub fn solve(&mut self, pressure: f64) -> Result<SteadySolution, FemError> {
+        if !(pressure > 0.0 && pressure.is_finite()) {
+            return Err(FemError::OutOfRange {
+                quantity: "the mean pressure in Pa",
+                value: pressure,
+                range: "positive and finite",
+            });
+        }
+        let arrived = match &mut self.path {
+            Some(path) => {
+                path.return_towards(pressure);
+                path.advance_to(pressure)
+            }
+            None => self.set_out(pressure),
+        };
+        let ended = |reached| FemError::PathEnded {
+            wanted: pressure,
+            columns: self.options.columns,
+            reached,
+        };
+        let Some(path) = &mut self.path else { return Err(ended(PathEnd::NotStarted)) };
+        if arrived.is_ok()
+            && let Ok(solution) = conclude(path, &self.scene, self.speed)
+        {
+            return Ok(solution);
+        }
+        Err(ended(last_converged(path, &self.scene, self.speed)))
+    }
+
+    /// A path from a slight contact on the coarsest mesh to the finest one, as far towards the
+    /// pressure as it goes.
+    fn set_out(&mut self, pressure: f64) -> Result<(), Stuck> {
+        let mut meshes = self.meshes().into_iter();
+        let mut path: Option<Path> = None;
+        let mut arrived = Err(Stuck);
+        for mesh in &mut meshes {
+            let entered = match &mut path {
+                Some(path) => path.refine(&mesh),
+                None => Err(Stuck),
+            };
+            if entered.is_err() {
+                path = Path::start(&self.scene, mesh, pressure).ok();
+            }
+            // A coarse mesh may fail where a finer one does not.
+            arrived = path.as_mut().map_or(Err(Stuck), |path| path.advance_to(pressure));
+        }
+        self.path = path;
+        arrived
+    }
+
+    /// From the coarsest to the wanted mesh.
+    fn meshes(&self) -> Vec<Mesh> {
+        let period = self.scene.profile.period();
+        let least = COARSEST_PER_WAVE * self.scene.profile.shortest_waves();
+        let mut columns = vec![self.options.columns];
+        while let Some(finer) = columns.last()
+            && *finer as f64 / REFINEMENT >= least
+        {
+            columns.push((*finer as f64 / REFINEMENT).round() as usize);
+        }
+        let height = self.options.height_ratio * period;
+        let mesh = |columns| Mesh::graded(columns, period, height, self.options.grading);
+        columns.into_iter().rev().map(mesh).collect()
+    }
+}
+
+/// The exact solution at the point a path has reached.
+fn conclude(path: &mut Path, scene: &Scene, speed: f64) -> Result<SteadySolution, Stuck> {
+    let before = path.cost;
+    let pressure = path.pressure;
+    let (state, residual) = path.finish()?;
+    let solution = SteadySolution::read(&state, path.level(), scene, speed, pressure, residual);
+    let cost = path.take_cost();
+    debug_assert!(cost.newton_steps >= before.newton_steps);
+    Ok(SteadySolution {
+        newton_steps: cost.newton_steps,
+        krylov_iterations: cost.krylov_iterations,
+        ..solution
+    })
+}
+
+/// The highest point of a path at which the exact solution converges too.
+fn last_converged(path: &mut Path, scene: &Scene, speed: f64) -> PathEnd {
+    loop {
+        if let Ok(solution) = conclude(path, scene, speed) {
+            return PathEnd::At {
+                pressure: solution.mean_pressure,
+                friction_coefficient: solution.friction_coefficient,
+                contact_area_fraction: solution.contact_area_fraction,
+            };
+        }
+        if path.step_back().is_none() {
+            return PathEnd::NotStarted;
+        }
+    }
+}
+
+fn check(speed: f64, profile: &RigidProfile, options: &BlockOptions) -> Result<(), FemError> {
+    let out_of_range =
+        |quantity, value, range| Err(FemError::OutOfRange { quantity, value, range });
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if !positive(speed) {
+        return out_of_range("the speed in m/s", speed, "positive and finite");
+    }
+    if !positive(profile.period()) {
+        return out_of_range("the period in m", profile.period(), "positive and finite");
+    }
+    if !COLUMNS_RANGE.contains(&options.columns) {
+        return out_of_range("the number of columns", options.columns as f64, "8 to 65536");
+    }
+    if !HEIGHT_RANGE.contains(&options.height_ratio) {
+        let height = options.height_ratio;
+        return out_of_range("the height of the block in periods", height, "0.1 to 10");
+    }
+    let Grading { first, growth } = options.grading;
+    if !(0.1..=10.0).contains(&first) {
+        return out_of_range("the height of the first row in columns", first, "0.1 to 10");
+    }
+    if !(1.0..=3.0).contains(&growth) {
+        return out_of_range("the growth of the rows", growth, "1 to 3");
+    }
+    Ok(())
+}

@@ -1,0 +1,276 @@
+//! The path of solutions of growing pressure and of finer meshes.
+//!
+//! A large contact is reached through smaller ones: on a coarse mesh the pressure grows in steps
+//! that adapt to what converges; at the wanted pressure the mesh is refined; at the end the
+//! barrier is lowered and the contact set closed. On the way the barrier stays at a thousandth of
+//! the height of the profile, where a step in pressure converges best. Rows are shifted against
+//! the shear of the block as it grows.
+
+use super::super::filter::Filter;
+use super::super::local::LocalPattern;
+use super::super::mesh::Mesh;
+use super::super::profile::RigidProfile;
+use super::super::row::Material;
+use super::super::unknowns::Unknowns;
+use super::newton::{Complementarity, Cost, Goal, Level, Problem, Stuck};
+use super::state::{Heights, State};
+use super::transfer::transfer;
+use crate::fem::block::Block;
+use crate::rubber::FiniteStrainRubber;
+use std::sync::Arc;
+
+/// What does not change along a path.
+pub(super) struct Scene {
+    pub rubber: FiniteStrainRubber,
+    /// Relaxation lengths `v τ` in m.
+    pub relaxation_lengths: Vec<f64>,
+    pub profile: RigidProfile,
+    pub heights: Heights,
+    /// Modulus in Pa at the longest wave, which scales the first pressure.
+    pub soft_modulus: f64,
+    /// Modulus in Pa at the shortest wave of the mesh.
+    pub stiff_modulus: f64,
+}
+
+/// A point of a path: a mesh and the state on it at one pressure, behind the barrier.
+pub(super) struct Path {
+    scene: Arc<Scene>,
+    level: Level,
+    state: State,
+    /// Mean pressure in Pa.
+    pub pressure: f64,
+    /// Ratio of the next pressure to this one.
+    step: f64,
+    /// All that was spent so far.
+    pub cost: Cost,
+    /// The points passed on this mesh, of growing pressure.
+    passed: Vec<Waypoint>,
+}
+
+/// A point of a path that was passed.
+#[derive(Clone)]
+struct Waypoint {
+    pressure: f64,
+    state: State,
+    mesh: Mesh,
+}
+
+/// Barrier in heights of the profile on the way.
+const BARRIER: f64 = 1e-3;
+/// Barrier before the contact set is closed.
+const LOW_BARRIER: f64 = 1e-4;
+/// The first pressure over the modulus: a contact of a few percent.
+const FIRST_PRESSURE: f64 = 5e-3;
+/// First and largest ratio of two pressures, and the ratio at which a path ends.
+const FIRST_STEP: f64 = 1.6;
+const LARGEST_STEP: f64 = 2.5;
+const SMALLEST_STEP: f64 = 1.02;
+/// A finer mesh that cannot be entered at a pressure is tried again at this share of it.
+const NEXT_ENTRY: f64 = 0.7;
+/// Shear of the elements beyond which rows are shifted anew.
+const MOST_SHEAR: f64 = 0.35;
+/// On the way the path need not be met exactly.
+const ON_THE_WAY: Goal = Goal { residual: 1e-3, most_steps: 50 };
+const AT_THE_END: Goal = Goal { residual: RESIDUAL_TOLERANCE, most_steps: 30 };
+/// Residual of a solution; see [`super::solution::SteadySolution::residual`].
+const RESIDUAL_TOLERANCE: f64 = 1e-9;
+
+impl Scene {
+    fn level(&self, mesh: Mesh) -> Level {
+        let lengths = &self.relaxation_lengths;
+        let filters = lengths.iter().map(|length| Filter::new(mesh.spacing(), *length)).collect();
+        let unknowns = Unknowns { columns: mesh.columns, rows: mesh.rows() };
+        let block = Block::new(mesh, Material { rubber: self.rubber.clone(), filters });
+        let pattern = LocalPattern::new(&block, lengths);
+        Level { block, pattern, unknowns }
+    }
+}
+
+impl Path {
+    /// A slight contact, at most at the wanted pressure.
+    pub fn start(scene: &Arc<Scene>, mesh: Mesh, wanted: f64) -> Result<Self, Stuck> {
+        let pressure = wanted.min(FIRST_PRESSURE * scene.soft_modulus);
+        let state = State::above(&mesh, &scene.profile, &scene.heights, pressure);
+        let level = scene.level(mesh);
+        let cost = Cost::default();
+        let scene = Arc::clone(scene);
+        let mut path =
+            Self { scene, level, state, pressure, step: FIRST_STEP, cost, passed: Vec::new() };
+        let mut barrier = 0.3;
+        while barrier > BARRIER {
+            barrier = (0.3 * barrier).max(BARRIER);
+            path.converge(pressure, barrier, ON_THE_WAY)?;
+        }
+        path.pass();
+        Ok(path)
+    }
+
+    /// Goes on to the wanted pressure.
+    pub fn advance_to(&mut self, wanted: f64) -> Result<(), Stuck> {
+        while self.pressure != wanted {
+            let next = if wanted > self.pressure {
+                wanted.min(self.step * self.pressure)
+            } else {
+                wanted.max(self.pressure / self.step)
+            };
+            // Two equal steps where one is all but enough.
+            let before = self.cost;
+            self.stand_upright();
+            match self.converge(next, BARRIER, ON_THE_WAY) {
+                Ok(()) => {
+                    self.pressure = next;
+                    self.pass();
+                    let steps = self.cost.newton_steps - before.newton_steps;
+                    let factor = if steps < 7 { 1.5 } else if steps > 12 { 0.7 } else { 1.0 };
+                    self.step = self.step.powf(factor).min(LARGEST_STEP);
+                }
+                Err(Stuck) => {
+                    self.step = self.step.sqrt();
+                    if self.step < SMALLEST_STEP {
+                        return Err(Stuck);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on with another mesh of the same block, from the highest pressure from which it can be
+    /// entered; coarse solutions of large contacts are too far from fine ones.
+    pub fn refine(&mut self, mesh: &Mesh) -> Result<(), Stuck> {
+        let mut passed = std::mem::take(&mut self.passed);
+        let mut highest = f64::INFINITY;
+        while let Some(waypoint) = passed.pop() {
+            if waypoint.pressure > highest && !passed.is_empty() {
+                continue;
+            }
+            let mesh = Mesh { skew: waypoint.mesh.skew, ..mesh.clone() };
+            self.state = transfer(&waypoint.state, &waypoint.mesh, &mesh);
+            self.level = self.scene.level(mesh);
+            self.pressure = waypoint.pressure;
+            self.centre();
+            if self.converge(self.pressure, BARRIER, ON_THE_WAY).is_ok() {
+                self.pass();
+                return Ok(());
+            }
+            highest = NEXT_ENTRY * waypoint.pressure;
+        }
+        Err(Stuck)
+    }
+
+    fn pass(&mut self) {
+        self.passed.push(Waypoint {
+            pressure: self.pressure,
+            state: self.state.clone(),
+            mesh: self.level.block.mesh().clone(),
+        });
+    }
+
+    /// Back to the point passed on this mesh that is nearest to a pressure.
+    pub fn return_towards(&mut self, pressure: f64) {
+        let distance = |waypoint: &Waypoint| (waypoint.pressure / pressure).ln().abs();
+        let nearest = self.passed.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        if let Some(waypoint) = nearest.cloned() {
+            self.go_back_to(waypoint);
+        }
+    }
+
+    /// Back to the point before this one; none if this is the first.
+    pub fn step_back(&mut self) -> Option<()> {
+        self.passed.retain(|waypoint| waypoint.pressure < self.pressure);
+        self.go_back_to(self.passed.last()?.clone());
+        Some(())
+    }
+
+    fn go_back_to(&mut self, waypoint: Waypoint) {
+        let material = self.level.block.material().clone();
+        self.level.block = Block::new(waypoint.mesh, material);
+        self.state = waypoint.state;
+        self.pressure = waypoint.pressure;
+        self.step = FIRST_STEP;
+    }
+
+    /// The exact state at this pressure and its residual; the path itself stays behind the barrier.
+    pub fn finish(&mut self) -> Result<(State, f64), Stuck> {
+        self.stand_upright();
+        let mut state = self.state.clone();
+        let pressure = self.pressure;
+        let low = Complementarity::Barrier(LOW_BARRIER * self.scene.heights.range);
+        let mut problem = self.problem(pressure);
+        let first = problem.converge(&mut state, low, ON_THE_WAY);
+        let last = first.and_then(|cost| {
+            self.spend(cost);
+            let mut problem = self.problem(pressure);
+            problem.converge(&mut state, Complementarity::ActiveSet, AT_THE_END)
+        })?;
+        self.spend(last);
+        Ok((state, last.residual))
+    }
+
+    /// The mesh at this point.
+    pub fn level(&self) -> &Level {
+        &self.level
+    }
+
+    /// What was spent since it was asked last.
+    pub fn take_cost(&mut self) -> Cost {
+        std::mem::take(&mut self.cost)
+    }
+
+    /// Puts forces and gaps of an interpolated state back behind the barrier: the pair with the
+    /// product of the barrier that has the same `λ - k g(u)`.
+    fn centre(&mut self) {
+        let spacing = self.level.block.mesh().spacing();
+        let product = BARRIER * self.scene.heights.range * self.pressure * spacing;
+        let stiffness = self.scene.stiff_modulus;
+        for (j, (force, gap)) in self.state.forces.iter_mut().zip(&mut self.state.gaps).enumerate() {
+            let [x, z] = [self.state.displacements[2 * j], self.state.displacements[2 * j + 1]];
+            let open = z - self.scene.profile.at(j as f64 * spacing + x).height;
+            let half = 0.5 * (*force - stiffness * open);
+            let root = half.hypot((stiffness * product).sqrt());
+            // The larger root first: the other one cancels.
+            (*force, *gap) = if half > 0.0 {
+                (root + half, product / (root + half))
+            } else {
+                (stiffness * product / (root - half), (root - half) / stiffness)
+            };
+        }
+    }
+
+    fn problem(&mut self, pressure: f64) -> Problem<'_> {
+        Problem {
+            level: &mut self.level,
+            profile: &self.scene.profile,
+            heights: self.scene.heights,
+            pressure,
+            modulus: self.scene.stiff_modulus,
+        }
+    }
+
+    /// Converges at a pressure; the state stays what it was if that fails.
+    fn converge(&mut self, pressure: f64, barrier: f64, goal: Goal) -> Result<(), Stuck> {
+        let mut state = self.state.clone();
+        let law = Complementarity::Barrier(barrier * self.scene.heights.range);
+        let cost = self.problem(pressure).converge(&mut state, law, goal)?;
+        self.state = state;
+        self.spend(cost);
+        Ok(())
+    }
+
+    fn spend(&mut self, cost: Cost) {
+        self.cost.newton_steps += cost.newton_steps;
+        self.cost.krylov_iterations += cost.krylov_iterations;
+    }
+
+    /// Shifts the rows so that the mean shear leaves the elements upright.
+    fn stand_upright(&mut self) {
+        let mesh = self.level.block.mesh();
+        let shear = self.state.shear(mesh);
+        if (mesh.skew + shear).abs() <= MOST_SHEAR {
+            return;
+        }
+        let upright = Mesh { skew: -shear, ..mesh.clone() };
+        self.state = transfer(&self.state, mesh, &upright);
+        self.level.block = Block::new(upright, self.level.block.material().clone());
+    }
+}
