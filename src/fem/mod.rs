@@ -6,4 +6,5 @@ pub mod mesh;
 pub mod profile;
 pub mod row;
 pub mod steady;
+pub mod transient;
 pub mod unknowns;

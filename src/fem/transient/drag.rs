@@ -1,0 +1,288 @@
+//! Pressing in and dragging, with steps as long as they converge.
+
+use super::block::TransientBlock;
+use super::contact::{Contact, Multipliers};
+use super::error::{StepFailure, TransientError};
+use super::options::{TransientOptions, positive};
+use super::predictor::carried;
+use super::solution::{Counts, Energy, Sample, TransientSolution};
+use super::step::{Load, State, Stepper};
+use super::tangent::Tangent;
+use crate::fem::mesh::Mesh;
+use crate::fem::profile::RigidProfile;
+use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
+use std::f64::consts::PI;
+
+/// A failed step is halved down to this fraction of the longest one.
+const SMALLEST_STEP: f64 = 1.0 / 4096.0;
+
+/// A step with no more Newton iterations than this is followed by one twice as long.
+const EASY_NEWTON: usize = 15;
+
+/// A rubber block that is pressed onto a rigid periodic profile and dragged over it.
+pub struct TransientContact {
+    speed: f64,
+    options: TransientOptions,
+    press_time: f64,
+    block: TransientBlock,
+    stepper: Stepper,
+    untouched: State,
+}
+
+/// A part of the motion with one limit for its steps; ends are hit exactly.
+struct Phase {
+    end: f64,
+    longest_step: f64,
+}
+
+/// The run up to the last step.
+struct Course {
+    block: TransientBlock,
+    state: State,
+    samples: Vec<Sample>,
+    dissipation: f64,
+    counts: Counts,
+    /// Motion of the lower edge over that of the upper one in the last step of the drag.
+    following: f64,
+}
+
+impl TransientContact {
+    /// A block of `rubber` that slides at `speed` in m/s.
+    ///
+    /// At high pressure the block shears by about `μ p / G_inf`; a negative skew of the mesh, half
+    /// to all of that, keeps its elements upright.
+    ///
+    /// # Errors
+    /// [`TransientError::Rubber`], [`TransientError::OutOfRange`] and
+    /// [`TransientError::PeriodMismatch`].
+    pub fn new(
+        rubber: &Rubber,
+        rheology: Rheology,
+        speed: f64,
+        profile: RigidProfile,
+        mesh: Mesh,
+        options: TransientOptions,
+    ) -> Result<Self, TransientError> {
+        options.validate()?;
+        positive("the sliding speed in m/s", speed)?;
+        let finite_strain = FiniteStrainRubber::new(rubber, rheology)?;
+        check_mesh(&mesh, &profile)?;
+        let press_time = options.press_time.unwrap_or_else(|| {
+            let times = rubber.branches.iter().map(|branch| 5.0 * branch.relaxation_time);
+            times.fold(mesh.period / speed, f64::max)
+        });
+        let spacing = mesh.spacing();
+        let stiffness = rubber.reduced_modulus(PI * speed / spacing).norm() / spacing;
+        let penalty = options.penalty_factor * stiffness;
+        let untouched = first_touch(&mesh, &profile, penalty);
+        let range = height_range(&profile, mesh.columns);
+        let block = TransientBlock::new(mesh, finite_strain);
+        let stepper = Stepper {
+            profile,
+            tangent: Tangent::new(&block),
+            flow: options.flow,
+            largest_violation: options.penetration_tolerance * range,
+        };
+        Ok(Self { speed, options, press_time, block, stepper, untouched })
+    }
+
+    /// Presses in with the nominal pressure in Pa and drags; `progress` sees every step.
+    ///
+    /// # Errors
+    /// [`TransientError::OutOfRange`] for a pressure that is not positive and finite;
+    /// [`TransientError::Stopped`] with all samples up to the step that failed.
+    pub fn run(
+        &self,
+        pressure: f64,
+        mut progress: impl FnMut(&Sample),
+    ) -> Result<TransientSolution, TransientError> {
+        positive("the nominal pressure in Pa", pressure)?;
+        let mut course = Course {
+            block: self.block.clone(),
+            state: self.untouched.clone(),
+            samples: vec![self.start()],
+            dissipation: 0.0,
+            counts: Counts::default(),
+            following: 0.0,
+        };
+        progress(&course.samples[0]);
+        let mut averaged_from = 0;
+        for phase in self.phases() {
+            averaged_from = course.samples.len() - 1;
+            self.run_phase(&mut course, &phase, pressure, &mut progress)?;
+        }
+        Ok(TransientSolution::new(course.samples, averaged_from, course.counts))
+    }
+
+    /// Pressing in, the drag up to the averaged part, the averaged part.
+    fn phases(&self) -> [Phase; 3] {
+        let mesh = self.block.mesh();
+        let options = &self.options;
+        let crossing = mesh.period / self.speed;
+        let longest_step = crossing / options.steps_per_period.unwrap_or(mesh.columns) as f64;
+        let after = |periods: usize| self.press_time + periods as f64 * crossing;
+        [
+            Phase {
+                end: self.press_time,
+                longest_step: self.press_time / options.press_steps as f64,
+            },
+            Phase { end: after(options.drag_periods - options.averaged_periods), longest_step },
+            Phase { end: after(options.drag_periods), longest_step },
+        ]
+    }
+
+    fn run_phase(
+        &self,
+        course: &mut Course,
+        phase: &Phase,
+        pressure: f64,
+        progress: &mut impl FnMut(&Sample),
+    ) -> Result<(), TransientError> {
+        let mut limit = phase.longest_step;
+        loop {
+            let last = course.samples[course.samples.len() - 1];
+            let rest = phase.end - last.time;
+            if rest <= 1e-9 * phase.longest_step {
+                return Ok(());
+            }
+            // Equal steps up to the end of the phase, rather than a sliver at last.
+            let time_step = rest / (rest / limit - 1e-6).ceil().max(1.0);
+            let before = course.counts.iterations.newton;
+            match self.step(course, last.time + time_step, time_step, pressure) {
+                Ok(sample) => {
+                    progress(&sample);
+                    if course.counts.iterations.newton - before <= EASY_NEWTON {
+                        limit = (2.0 * limit).min(phase.longest_step);
+                    }
+                }
+                Err(failure) => {
+                    course.counts.rejected_steps += 1;
+                    limit = 0.5 * time_step;
+                    if limit < SMALLEST_STEP * phase.longest_step {
+                        return Err(TransientError::Stopped {
+                            time: last.time,
+                            pressure: last.pressure,
+                            displacement: last.displacement,
+                            time_step,
+                            failure,
+                            samples: std::mem::take(&mut course.samples),
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// One step; the course changes only if it converges.
+    fn step(
+        &self,
+        course: &mut Course,
+        time: f64,
+        time_step: f64,
+        pressure: f64,
+    ) -> Result<Sample, StepFailure> {
+        let load = self.load(time, pressure);
+        let last = course.samples[course.samples.len() - 1];
+        let mesh = course.block.mesh();
+        let distance = load.displacement - last.displacement;
+        let guess = carried(mesh, &course.state, course.following * distance, distance);
+        let (state, contact, history) = self.stepper.advance(
+            &course.block,
+            guess,
+            load,
+            time_step,
+            &mut course.counts.iterations,
+        )?;
+        if distance > 0.0 {
+            let moved = mean_along(&state.nodes[..2 * mesh.columns], 0)
+                - mean_along(&course.state.nodes[..2 * mesh.columns], 0);
+            course.following = (moved / distance).clamp(0.0, 1.0);
+        }
+        let upper = state.nodes.len() - 2 * mesh.columns;
+        let lowered =
+            mean_along(&course.state.nodes[upper..], 1) - mean_along(&state.nodes[upper..], 1);
+        let period = mesh.period;
+        course.block.keep(&history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
+        let energy = course.block.energy();
+        let (against, _) = contact.resultants();
+        let force = last.friction_coefficient * last.pressure * period;
+        let sample = Sample {
+            time,
+            pressure: load.pressure,
+            displacement: load.displacement,
+            friction_coefficient: against / (load.pressure * period),
+            contact_area_fraction: contact.area_fraction,
+            mean_separation: contact.mean_separation,
+            energy: Energy {
+                drag_work: last.energy.drag_work + 0.5 * (force + against) * distance,
+                load_work: last.energy.load_work
+                    + 0.5 * (last.pressure + load.pressure) * period * lowered,
+                dissipated: last.energy.dissipated
+                    + 0.5 * time_step * (course.dissipation + energy.dissipation),
+                stored: energy.stored,
+            },
+        };
+        course.dissipation = energy.dissipation;
+        course.state = state;
+        course.samples.push(sample);
+        course.counts.steps += 1;
+        Ok(sample)
+    }
+
+    fn load(&self, time: f64, pressure: f64) -> Load {
+        Load {
+            pressure: pressure * (time / self.press_time).min(1.0),
+            displacement: self.speed * (time - self.press_time).max(0.0),
+        }
+    }
+
+    fn start(&self) -> Sample {
+        let mesh = self.block.mesh();
+        let edge = &self.untouched.nodes[..2 * mesh.columns];
+        let contact = Contact::at(mesh, &self.stepper.profile, edge, &self.untouched.multipliers);
+        Sample { mean_separation: contact.mean_separation, ..Sample::default() }
+    }
+}
+
+/// The block above the profile, its lowest weighted gap closed.
+fn first_touch(mesh: &Mesh, profile: &RigidProfile, penalty: f64) -> State {
+    let n = mesh.columns;
+    let multipliers = Multipliers { values: vec![0.0; n], penalty };
+    let contact = Contact::at(mesh, profile, &vec![0.0; 2 * n], &multipliers);
+    let lift = -contact.gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let nodes = [0.0, lift].repeat(n * (mesh.rows() + 1));
+    State { nodes, multipliers }
+}
+
+/// Range of the heights of the profile, or the width of an element for a flat one.
+fn height_range(profile: &RigidProfile, columns: usize) -> f64 {
+    let heights = profile.sample(4 * columns);
+    let most = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    if most > least { most - least } else { profile.period() / columns as f64 }
+}
+
+/// Mean x (0) or z (1) of a row of nodes.
+fn mean_along(row: &[f64], direction: usize) -> f64 {
+    2.0 * row.iter().skip(direction).step_by(2).sum::<f64>() / row.len() as f64
+}
+
+fn check_mesh(mesh: &Mesh, profile: &RigidProfile) -> Result<(), TransientError> {
+    positive("the period of the mesh in m", mesh.period)?;
+    positive("the height of the mesh in m", mesh.height())?;
+    if mesh.columns < 3 {
+        return Err(TransientError::OutOfRange {
+            quantity: "the number of columns",
+            value: mesh.columns as f64,
+            range: "at least 3, so that a node has two neighbours",
+        });
+    }
+    // Lengths written in decimals differ by round-off.
+    if (mesh.period - profile.period()).abs() > 1e-12 * mesh.period {
+        return Err(TransientError::PeriodMismatch {
+            mesh: mesh.period,
+            profile: profile.period(),
+        });
+    }
+    Ok(())
+}
