@@ -1,7 +1,7 @@
 //! The block in time: strains, internal tensors, internal forces and their exact tangent.
 
 use super::flow::{FlowRule, FlowStep};
-use super::point::{Part, Response, Tensor, right_cauchy_green, strain_change};
+use super::point::{Part, Response, Tensor, driving_force, right_cauchy_green, strain_change};
 use crate::fem::mesh::{CENTRE, Element, Mesh, POINTS};
 use crate::rubber::finite_strain::{
     FiniteStrainRubber, IDENTITY, Spring, Symmetric, contract, determinant,
@@ -24,15 +24,6 @@ pub struct Linearised {
 /// An element is turned inside out, or an internal tensor is not positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inverted;
-
-/// Energies of the block, in J per metre of width (or W per metre).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BlockEnergy {
-    /// Energy stored in all springs.
-    pub stored: f64,
-    /// Power that the branches turn into heat.
-    pub dissipation: f64,
-}
 
 /// The rubber block with its memory at the end of the last step.
 #[derive(Debug, Clone)]
@@ -113,63 +104,66 @@ impl TransientBlock {
         for point in 0..POINTS {
             let gradients = &element.gradients[point];
             let f = deformation(&nodes, gradients)?;
-            let part = if point == CENTRE { Part::Volumetric } else { Part::Shear };
             let first = (index * POINTS + point) * branches;
             let past = &history.internal[first..first + branches];
             let c = right_cauchy_green(&f);
-            let response =
-                Response::at(&self.rubber, part, &c, past, &history.follows).ok_or(Inverted)?;
+            let response = Response::at(&self.rubber, part_of(point), &c, past, &history.follows)
+                .ok_or(Inverted)?;
             sum.add(&f, gradients, element.weights[point], &response);
         }
         Ok(sum)
     }
 
-    /// Keeps the state at the end of a step.
+    /// Keeps the state at the end of a step and returns the energy in J/m that it turned into heat:
+    /// `-∂ψ/∂C_i : dC_i` by the trapezoidal rule over the change of `C_i`. The power at the ends of
+    /// steps far longer than a relaxation time would say nothing about what happens in between.
     ///
     /// # Errors
     /// [`Inverted`]; the state kept before is then lost.
-    pub fn keep(&mut self, history: &History, displacements: &[f64]) -> Result<(), Inverted> {
+    pub fn keep(&mut self, history: &History, displacements: &[f64]) -> Result<f64, Inverted> {
         let branches = history.steps.len();
+        let mut heat = 0.0;
         for index in 0..self.strains.len() {
             let nodes = self.gather(displacements, index);
-            let gradients = &self.elements[index / self.mesh.columns].gradients;
-            for (point, gradients) in gradients.iter().enumerate() {
+            let element = &self.elements[index / self.mesh.columns];
+            for (point, gradients) in element.gradients.iter().enumerate() {
+                let (part, weight) = (part_of(point), element.weights[point]);
                 let c = right_cauchy_green(&deformation(&nodes, gradients)?);
-                self.strains[index][point] = c;
+                let old_c = std::mem::replace(&mut self.strains[index][point], c);
                 let first = (index * POINTS + point) * branches;
-                for (k, step) in history.steps.iter().enumerate() {
-                    let past = &history.internal[first + k];
-                    self.internal[first + k] = [0, 1, 2].map(|i| past[i] + step.strain * c[i]);
+                for (k, branch) in self.rubber.branches.iter().enumerate() {
+                    let (past, follows) = (&history.internal[first + k], history.follows[k]);
+                    let c_i = [0, 1, 2].map(|i| past[i] + follows * c[i]);
+                    let old_c_i = std::mem::replace(&mut self.internal[first + k], c_i);
+                    let old = driving_force(&self.rubber, part, branch, &old_c, &old_c_i);
+                    let new = driving_force(&self.rubber, part, branch, &c, &c_i);
+                    let force = [0, 1, 2].map(|i| 0.5 * (old[i] + new[i]));
+                    let flow = [0, 1, 2].map(|i| c_i[i] - old_c_i[i]);
+                    heat += weight * contract(&force, &flow);
                 }
             }
         }
-        Ok(())
+        Ok(heat)
     }
 
-    /// Stored energy and dissipation of the state kept last.
-    pub fn energy(&self) -> BlockEnergy {
+    /// Energy in J/m stored in the springs, in the state kept last.
+    pub fn stored_energy(&self) -> f64 {
         let rubber = &self.rubber;
         let branches = rubber.branches.len();
-        let mut sum = BlockEnergy::default();
+        let mut sum = 0.0;
         for (index, strains) in self.strains.iter().enumerate() {
             let weights = &self.elements[index / self.mesh.columns].weights;
             for (point, (c, weight)) in strains.iter().zip(weights).enumerate() {
-                // Each kind of point stands for one part of the energy.
-                let part = |spring: &Spring| {
-                    let (shear, volumetric) = if point == CENTRE { (0.0, 1.0) } else { (1.0, 0.0) };
-                    Spring {
-                        shear: shear * spring.shear,
-                        volumetric: volumetric * spring.volumetric,
-                        relaxation_time: spring.relaxation_time,
-                    }
+                // A spring without one of its moduli has the energy of the other part.
+                let only = |spring: &Spring| match part_of(point) {
+                    Part::Shear => Spring { volumetric: 0.0, ..*spring },
+                    Part::Volumetric => Spring { shear: 0.0, ..*spring },
                 };
-                sum.stored += weight * rubber.energy(&part(&rubber.equilibrium), c, &IDENTITY);
                 let first = (index * POINTS + point) * branches;
-                for (k, branch) in rubber.branches.iter().enumerate() {
-                    let (branch, c_i) = (part(branch), &self.internal[first + k]);
-                    sum.stored += weight * rubber.energy(&branch, c, c_i);
-                    let (shear, volumetric) = rubber.dissipation(&branch, c, c_i);
-                    sum.dissipation += weight * (shear + volumetric);
+                let internal = &self.internal[first..first + branches];
+                sum += weight * rubber.energy(&only(&rubber.equilibrium), c, &IDENTITY);
+                for (branch, c_i) in rubber.branches.iter().zip(internal) {
+                    sum += weight * rubber.energy(&only(branch), c, c_i);
                 }
             }
         }
@@ -222,6 +216,11 @@ impl Linearised {
             }
         }
     }
+}
+
+/// The part of stress and energy that a point stands for.
+fn part_of(point: usize) -> Part {
+    if point == CENTRE { Part::Volumetric } else { Part::Shear }
 }
 
 /// Deformation gradient from the displacements of the nodes.

@@ -40,7 +40,6 @@ struct Course {
     block: TransientBlock,
     state: State,
     samples: Vec<Sample>,
-    dissipation: f64,
     counts: Counts,
     /// Motion of the lower edge over that of the upper one in the last step of the drag.
     following: f64,
@@ -101,7 +100,6 @@ impl TransientContact {
             block: self.block.clone(),
             state: self.untouched.clone(),
             samples: vec![self.start()],
-            dissipation: 0.0,
             counts: Counts::default(),
             following: 0.0,
         };
@@ -202,8 +200,7 @@ impl TransientContact {
         let lowered =
             mean_along(&course.state.nodes[upper..], 1) - mean_along(&state.nodes[upper..], 1);
         let period = mesh.period;
-        course.block.keep(&history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
-        let energy = course.block.energy();
+        let heat = course.block.keep(&history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
         let (against, _) = contact.resultants();
         let force = last.friction_coefficient * last.pressure * period;
         let sample = Sample {
@@ -217,12 +214,10 @@ impl TransientContact {
                 drag_work: last.energy.drag_work + 0.5 * (force + against) * distance,
                 load_work: last.energy.load_work
                     + 0.5 * (last.pressure + load.pressure) * period * lowered,
-                dissipated: last.energy.dissipated
-                    + 0.5 * time_step * (course.dissipation + energy.dissipation),
-                stored: energy.stored,
+                dissipated: last.energy.dissipated + heat,
+                stored: course.block.stored_energy(),
             },
         };
-        course.dissipation = energy.dissipation;
         course.state = state;
         course.samples.push(sample);
         course.counts.steps += 1;

@@ -18,9 +18,12 @@ pub struct TransientOptions {
     pub drag_periods: usize,
     /// Periods at the end of the drag over which results are averaged.
     pub averaged_periods: usize,
-    /// Least number of steps for sliding one period. By default the columns of the mesh.
+    /// Least number of steps for sliding one period. By default the columns of the mesh: it is
+    /// the cheapest, because the contact nodes then move on by one a step, but the oscillation is
+    /// sampled at one position of the nodes on the profile only. Several steps a column show it.
     pub steps_per_period: Option<usize>,
-    /// Largest violation of the contact conditions over the range of the profile's heights.
+    /// Largest violation of the contact conditions over the range of the profile's heights (over
+    /// the width of an element for a flat profile).
     pub penetration_tolerance: f64,
     /// Penalty ε over the stiffness `|E_r(π v / h)| / h` of an element at the frequency of the
     /// shortest wave.

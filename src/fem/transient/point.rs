@@ -1,7 +1,8 @@
 //! The law at one integration point with the memory of one step.
 
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Rheology, Symmetric, contract, determinant, inverse, sandwich,
+    FiniteStrainRubber, IDENTITY, Rheology, Spring, Symmetric, contract, determinant, inverse,
+    sandwich,
 };
 
 /// A tensor in the plane: components xx, xz, zx, zz.
@@ -107,6 +108,33 @@ impl Response {
     }
 }
 
+/// The force `-∂ψ/∂C_i` in Pa that drives the flow of a branch.
+pub fn driving_force(
+    rubber: &FiniteStrainRubber,
+    part: Part,
+    branch: &Spring,
+    c: &Symmetric,
+    c_i: &Symmetric,
+) -> Symmetric {
+    let g = inverse(c_i);
+    let strain = [0, 1, 2].map(|i| 0.5 * (c[i] - c_i[i]));
+    match (rubber.rheology, part) {
+        (Rheology::NeoHookean, Part::Shear) => {
+            let pulled = sandwich(&g, c);
+            [0, 1, 2].map(|i| 0.5 * branch.shear * (pulled[i] - g[i]))
+        }
+        (Rheology::NeoHookean, Part::Volumetric) => {
+            let volume = determinant(c) / determinant(c_i);
+            g.map(|g| 0.25 * branch.volumetric * (volume - 1.0) * g)
+        }
+        (Rheology::Linear, Part::Shear) => strain.map(|e| branch.shear * e),
+        (Rheology::Linear, Part::Volumetric) => {
+            let trace = contract(&IDENTITY, &strain);
+            IDENTITY.map(|unit| 0.5 * branch.volumetric * trace * unit)
+        }
+    }
+}
+
 /// Strains of one spring.
 struct State<'a> {
     c: &'a Symmetric,
@@ -131,4 +159,26 @@ pub fn strain_change(f: &Tensor, gradient: &[f64; 2], direction: usize) -> Symme
         2.0 * row[1] * gradient[1],
         row[0] * gradient[1] + row[1] * gradient[0],
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rubber::Rubber;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn the_power_of_the_driving_force_is_the_dissipation() {
+        let (c, c_i) = ([1.3, 0.8, 0.2], [1.1, 0.9, -0.1]);
+        for rheology in [Rheology::NeoHookean, Rheology::Linear] {
+            let rubber = FiniteStrainRubber::new(&Rubber::table_2_1(), rheology).unwrap();
+            for branch in &rubber.branches {
+                let flow = [0, 1, 2].map(|i| (c[i] - c_i[i]) / branch.relaxation_time);
+                let power = |part| contract(&driving_force(&rubber, part, branch, &c, &c_i), &flow);
+                let (shear, volumetric) = rubber.dissipation(branch, &c, &c_i);
+                assert_relative_eq!(power(Part::Shear), shear, max_relative = 1e-13);
+                assert_relative_eq!(power(Part::Volumetric), volumetric, max_relative = 1e-13);
+            }
+        }
+    }
 }

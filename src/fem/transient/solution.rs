@@ -9,7 +9,7 @@ pub struct Energy {
     pub drag_work: f64,
     /// Work of the dead load on the upper edge.
     pub load_work: f64,
-    /// Heat from the branches, their power integrated by the trapezoidal rule.
+    /// Heat from the branches, by the trapezoidal rule over the flow in a step.
     pub dissipated: f64,
     /// Energy stored in the springs.
     pub stored: f64,
