@@ -1,10 +1,11 @@
 //! Pressing in and dragging, with steps as long as they converge.
 
 use super::block::TransientBlock;
-use super::contact::{Contact, Multipliers};
+use super::contact::Contact;
 use super::error::{StepFailure, TransientError};
 use super::options::{TransientOptions, positive};
 use super::predictor::carried;
+use super::setup::{check_mesh, first_touch, height_range};
 use super::solution::{Counts, Energy, Sample, TransientSolution};
 use super::step::{Load, State, Stepper};
 use super::tangent::Tangent;
@@ -43,6 +44,50 @@ struct Course {
     counts: Counts,
     /// Motion of the lower edge over that of the upper one in the last step of the drag.
     following: f64,
+}
+
+impl Course {
+    /// Adds the sample of a step from the state `old` to the present one.
+    fn record(
+        &mut self,
+        old: &State,
+        contact: &Contact,
+        time: f64,
+        load: Load,
+        heat: f64,
+    ) -> Sample {
+        let last = self.samples[self.samples.len() - 1];
+        let mesh = self.block.mesh();
+        let row = 2 * mesh.columns;
+        let distance = load.displacement - last.displacement;
+        if distance > 0.0 {
+            let moved = mean_along(&self.state.nodes[..row], 0) - mean_along(&old.nodes[..row], 0);
+            self.following = (moved / distance).clamp(0.0, 1.0);
+        }
+        let upper = old.nodes.len() - row;
+        let lowered =
+            mean_along(&old.nodes[upper..], 1) - mean_along(&self.state.nodes[upper..], 1);
+        let (force, _) = contact.resultants();
+        let last_force = last.friction_coefficient * last.pressure * mesh.period;
+        let mean_load = 0.5 * (last.pressure + load.pressure) * mesh.period;
+        let sample = Sample {
+            time,
+            pressure: load.pressure,
+            displacement: load.displacement,
+            friction_coefficient: force / (load.pressure * mesh.period),
+            contact_area_fraction: contact.area_fraction,
+            mean_separation: contact.mean_separation,
+            energy: Energy {
+                drag_work: last.energy.drag_work + 0.5 * (last_force + force) * distance,
+                load_work: last.energy.load_work + mean_load * lowered,
+                dissipated: last.energy.dissipated + heat,
+                stored: self.block.stored_energy(),
+            },
+        };
+        self.samples.push(sample);
+        self.counts.steps += 1;
+        sample
+    }
 }
 
 impl TransientContact {
@@ -191,37 +236,9 @@ impl TransientContact {
             time_step,
             &mut course.counts.iterations,
         )?;
-        if distance > 0.0 {
-            let moved = mean_along(&state.nodes[..2 * mesh.columns], 0)
-                - mean_along(&course.state.nodes[..2 * mesh.columns], 0);
-            course.following = (moved / distance).clamp(0.0, 1.0);
-        }
-        let upper = state.nodes.len() - 2 * mesh.columns;
-        let lowered =
-            mean_along(&course.state.nodes[upper..], 1) - mean_along(&state.nodes[upper..], 1);
-        let period = mesh.period;
         let heat = course.block.keep(&history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
-        let (against, _) = contact.resultants();
-        let force = last.friction_coefficient * last.pressure * period;
-        let sample = Sample {
-            time,
-            pressure: load.pressure,
-            displacement: load.displacement,
-            friction_coefficient: against / (load.pressure * period),
-            contact_area_fraction: contact.area_fraction,
-            mean_separation: contact.mean_separation,
-            energy: Energy {
-                drag_work: last.energy.drag_work + 0.5 * (force + against) * distance,
-                load_work: last.energy.load_work
-                    + 0.5 * (last.pressure + load.pressure) * period * lowered,
-                dissipated: last.energy.dissipated + heat,
-                stored: course.block.stored_energy(),
-            },
-        };
-        course.state = state;
-        course.samples.push(sample);
-        course.counts.steps += 1;
-        Ok(sample)
+        let old = std::mem::replace(&mut course.state, state);
+        Ok(course.record(&old, &contact, time, load, heat))
     }
 
     fn load(&self, time: f64, pressure: f64) -> Load {
@@ -239,45 +256,7 @@ impl TransientContact {
     }
 }
 
-/// The block above the profile, its lowest weighted gap closed.
-fn first_touch(mesh: &Mesh, profile: &RigidProfile, penalty: f64) -> State {
-    let n = mesh.columns;
-    let multipliers = Multipliers { values: vec![0.0; n], penalty };
-    let contact = Contact::at(mesh, profile, &vec![0.0; 2 * n], &multipliers);
-    let lift = -contact.gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    let nodes = [0.0, lift].repeat(n * (mesh.rows() + 1));
-    State { nodes, multipliers }
-}
-
-/// Range of the heights of the profile, or the width of an element for a flat one.
-fn height_range(profile: &RigidProfile, columns: usize) -> f64 {
-    let heights = profile.sample(4 * columns);
-    let most = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let least = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    if most > least { most - least } else { profile.period() / columns as f64 }
-}
-
 /// Mean x (0) or z (1) of a row of nodes.
 fn mean_along(row: &[f64], direction: usize) -> f64 {
     2.0 * row.iter().skip(direction).step_by(2).sum::<f64>() / row.len() as f64
-}
-
-fn check_mesh(mesh: &Mesh, profile: &RigidProfile) -> Result<(), TransientError> {
-    positive("the period of the mesh in m", mesh.period)?;
-    positive("the height of the mesh in m", mesh.height())?;
-    if mesh.columns < 3 {
-        return Err(TransientError::OutOfRange {
-            quantity: "the number of columns",
-            value: mesh.columns as f64,
-            range: "at least 3, so that a node has two neighbours",
-        });
-    }
-    // Lengths written in decimals differ by round-off.
-    if (mesh.period - profile.period()).abs() > 1e-12 * mesh.period {
-        return Err(TransientError::PeriodMismatch {
-            mesh: mesh.period,
-            profile: profile.period(),
-        });
-    }
-    Ok(())
 }

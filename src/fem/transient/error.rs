@@ -52,7 +52,7 @@ pub enum TransientError {
     #[error(
         "no step from t = {time:e} s (pressure {pressure:e} Pa, {displacement:e} m dragged) \
          even with {time_step:e} s: {failure}; use a finer mesh, a skew of the mesh nearer to \
-         the shear of the block, or a smaller pressure"
+         the negative shear of the block, or a smaller pressure"
     )]
     Stopped {
         /// Time of the last solution in s.

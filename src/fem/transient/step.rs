@@ -1,6 +1,6 @@
 //! One implicit time step: Newton on the equilibrium, Uzawa on the contact pressures.
 
-use super::block::{History, TransientBlock};
+use super::block::{History, Linearised, TransientBlock};
 use super::contact::{Contact, Multipliers};
 use super::error::StepFailure;
 use super::flow::FlowRule;
@@ -14,7 +14,7 @@ const EQUILIBRIUM_TOLERANCE: f64 = 1e-8;
 /// Newton iterations for one set of multipliers; the contact rarely needs more than ten.
 const MAX_NEWTON: usize = 25;
 
-/// Uzawa updates in a step. Each of them shrinks the violation by more than the penalty factor.
+/// Uzawa updates in a step. Each of them shrinks the violation by about the penalty factor or more.
 const MAX_UZAWA: usize = 30;
 
 /// Largest change of a displacement in an iteration, over the period.
@@ -184,7 +184,7 @@ impl Stepper {
 
 /// The forces at one set of displacements.
 struct Trial {
-    elements: Vec<super::block::Linearised>,
+    elements: Vec<Linearised>,
     contact: Contact,
     residual: Vec<f64>,
     norm: f64,

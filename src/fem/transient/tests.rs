@@ -228,7 +228,8 @@ fn the_work_of_the_drag_is_dissipated_or_stored() {
         energy.imbalance() / energy.dissipated
     };
     let (coarse, fine) = (imbalance(24), imbalance(96));
-    assert!(fine.abs() < 0.5 * coarse.abs() && fine.abs() < 0.01, "{coarse} {fine}");
+    // At least first order: contact nodes change sides within a step.
+    assert!(fine.abs() < 0.25 * coarse.abs() && fine.abs() < 2e-3, "{coarse} {fine}");
 }
 
 #[test]
