@@ -8,4 +8,5 @@ pub mod mesh;
 pub mod profile;
 pub mod row;
 pub mod steady;
+pub mod transient;
 pub mod unknowns;

@@ -1,0 +1,71 @@
+//! What can go wrong in the transient contact.
+
+use super::solution::Sample;
+
+/// Why a time step has no solution.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum StepFailure {
+    /// An element is turned inside out, or an internal tensor is not positive.
+    #[error("an element is turned inside out")]
+    Inverted,
+    /// The tangent is singular.
+    #[error("the tangent is singular")]
+    Singular,
+    /// Newton did not end.
+    #[error("the equilibrium did not converge (residual {residual:.1e} of the load)")]
+    EquilibriumNotConverged {
+        /// Residual over the load.
+        residual: f64,
+    },
+    /// Uzawa did not end.
+    #[error("the contact pressures did not converge")]
+    ContactNotConverged,
+}
+
+/// Why there is no transient solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TransientError {
+    /// The rubber's numbers are no rubber for large strains.
+    #[error(transparent)]
+    Rubber(#[from] crate::rubber::RubberError),
+    /// A number outside its range.
+    #[error("{quantity} is {value}, it must be {range}")]
+    OutOfRange {
+        /// Which number, with its unit.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range it must lie in.
+        range: &'static str,
+    },
+    /// Block and profile do not repeat together.
+    #[error(
+        "the block's period is {mesh} m, the profile's {profile} m: they must be the same length"
+    )]
+    PeriodMismatch {
+        /// Period of the mesh in m.
+        mesh: f64,
+        /// Period of the profile in m.
+        profile: f64,
+    },
+    /// Even the smallest time step found no solution.
+    #[error(
+        "no step from t = {time:e} s (pressure {pressure:e} Pa, {displacement:e} m dragged) \
+         even with {time_step:e} s: {failure}; use a finer mesh, a skew of the mesh nearer to \
+         the negative shear of the block, or a smaller pressure"
+    )]
+    Stopped {
+        /// Time of the last solution in s.
+        time: f64,
+        /// Pressure at that time in Pa.
+        pressure: f64,
+        /// Distance dragged by then in m.
+        displacement: f64,
+        /// The smallest step tried, in s.
+        time_step: f64,
+        /// What happened in it.
+        failure: StepFailure,
+        /// The solution up to that time.
+        samples: Vec<Sample>,
+    },
+}
