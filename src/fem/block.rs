@@ -39,11 +39,6 @@ impl Block {
         &self.rows
     }
 
-    /// Numbers in an array over the nodes.
-    pub fn len(&self) -> usize {
-        self.row_len() * (self.rows.len() + 1)
-    }
-
     /// Numbers in a row of nodes.
     pub fn row_len(&self) -> usize {
         2 * self.mesh.columns

@@ -8,13 +8,23 @@
 
 use super::block::Block;
 use super::unknowns::Unknowns;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, IntranodeLbltRef, SymbolicCholesky, SymmetricOrdering,
+    factorize_symbolic_cholesky,
+};
 use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
+use faer::{Conj, MatMut, Par, Side};
+use std::sync::Arc;
 
 /// Wavenumber times depth at which the stiffness of a row is taken: on the stiff side, since the
 /// contact and the stresses then lose less of their weight than the softest waves gain.
 const WAVES_AT_DEPTH: f64 = 6.0;
+
+/// Threads pay for large factors only.
+const PARALLEL: Par = Par::Seq;
 
 /// Stiffness of one contact node: its 2×2 block.
 pub type NodeStiffness = [[f64; 2]; 2];
@@ -24,7 +34,7 @@ pub struct LocalPattern {
     unknowns: Unknowns,
     symbolic: SymbolicSparseColMat<usize>,
     argsort: Argsort<usize>,
-    symbolic_lu: SymbolicLu<usize>,
+    symbolic_factor: Arc<SymbolicCholesky<usize>>,
     /// Fraction by which each branch follows, for each row.
     follows: Vec<Vec<f64>>,
 }
@@ -32,7 +42,10 @@ pub struct LocalPattern {
 /// A factorised local tangent.
 pub struct LocalTangent {
     unknowns: Unknowns,
-    lu: Lu<usize, f64>,
+    symbolic: Arc<SymbolicCholesky<usize>>,
+    values: Vec<f64>,
+    subdiagonal: Vec<f64>,
+    permutation: [Vec<usize>; 2],
     /// Response of all unknowns to the displacement of the upper edge.
     edge_response: Vec<f64>,
 }
@@ -45,14 +58,24 @@ impl LocalPattern {
         let mut pairs = Vec::new();
         for_each_entry(unknowns, |row, col| pairs.push(Pair { row, col }));
         for node in 0..mesh.columns {
-            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            for (i, j) in [(0, 0), (1, 0), (1, 1)] {
                 pairs.push(Pair { row: 2 * node + i, col: 2 * node + j });
             }
         }
         let size = unknowns.own();
         let (symbolic, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
             .expect("indices lie in the matrix");
-        let symbolic_lu = SymbolicLu::try_new(symbolic.as_ref()).expect("memory for the pattern");
+        let symbolic_factor = factorize_symbolic_cholesky(
+            symbolic.as_ref(),
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..Default::default()
+            },
+        )
+        .expect("memory for the pattern");
+        let symbolic_factor = Arc::new(symbolic_factor);
         let heights = mesh.node_heights();
         let follows = (0..mesh.rows())
             .map(|row| {
@@ -61,7 +84,7 @@ impl LocalPattern {
                 relaxation_lengths.iter().map(|length| 1.0 / (1.0 + (q * length).powi(2))).collect()
             })
             .collect();
-        Self { unknowns, symbolic, argsort, symbolic_lu, follows }
+        Self { unknowns, symbolic, argsort, symbolic_factor, follows }
     }
 
     /// Fraction by which the internal tensors of each branch follow their point, for each row of
@@ -82,7 +105,9 @@ impl LocalPattern {
                 for (j, col) in places.iter().enumerate() {
                     for (i, row) in places.iter().enumerate() {
                         match (row, col) {
-                            (Some(_), Some(_)) => values.push(stiffness[i][j]),
+                            (Some(row), Some(col)) if row >= col => {
+                                values.push(stiffness[i][j]);
+                            }
                             (Some(row), None) => edge[*row] += stiffness[i][j],
                             _ => {}
                         }
@@ -90,11 +115,10 @@ impl LocalPattern {
                 }
             }
         }
-        values.extend(contact.iter().flat_map(|k| [k[0][0], k[0][1], k[1][0], k[1][1]]));
+        values.extend(contact.iter().flat_map(|k| [k[0][0], k[1][0], k[1][1]]));
         let matrix =
             SparseColMat::new_from_argsort(self.symbolic.clone(), &self.argsort, &values).ok()?;
-        let lu = Lu::try_new_with_symbolic(self.symbolic_lu.clone(), matrix.as_ref()).ok()?;
-        let mut tangent = LocalTangent { unknowns, lu, edge_response: Vec::new() };
+        let mut tangent = LocalTangent::factorise(unknowns, &self.symbolic_factor, &matrix);
         tangent.solve_own(&mut edge);
         tangent.edge_response = edge;
         Some(tangent)
@@ -102,6 +126,33 @@ impl LocalPattern {
 }
 
 impl LocalTangent {
+    fn factorise(
+        unknowns: Unknowns,
+        symbolic: &Arc<SymbolicCholesky<usize>>,
+        matrix: &SparseColMat<usize, f64>,
+    ) -> Self {
+        let size = unknowns.own();
+        let mut values = vec![0.0; symbolic.len_val()];
+        let mut subdiagonal = vec![0.0; size];
+        let mut permutation = [vec![0; size], vec![0; size]];
+        let scratch =
+            symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(PARALLEL, Default::default());
+        let [forward, inverse] = &mut permutation;
+        symbolic.factorize_numeric_intranode_lblt(
+            &mut values,
+            &mut subdiagonal,
+            forward,
+            inverse,
+            matrix.as_ref(),
+            Side::Lower,
+            PARALLEL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            Default::default(),
+        );
+        let symbolic = Arc::clone(symbolic);
+        Self { unknowns, symbolic, values, subdiagonal, permutation, edge_response: Vec::new() }
+    }
+
     /// Solves with the local tangent: forces and, at the end, the mean displacement of the
     /// contact nodes in; unknowns out.
     pub fn solve(&self, right: &mut [f64]) {
@@ -119,8 +170,20 @@ impl LocalTangent {
 
     fn solve_own(&self, right: &mut [f64]) {
         let size = right.len();
-        let column = faer::MatMut::from_column_major_slice_mut(right, size, 1);
-        self.lu.solve_in_place(column);
+        let [forward, inverse] = &self.permutation;
+        let factor = IntranodeLbltRef::new(
+            &self.symbolic,
+            &self.values,
+            &self.subdiagonal,
+            PermRef::new_checked(forward, inverse, size),
+        );
+        let scratch = self.symbolic.solve_in_place_scratch::<f64>(1, PARALLEL);
+        factor.solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(right, size, 1),
+            PARALLEL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
     }
 }
 
@@ -143,7 +206,7 @@ fn for_each_entry(unknowns: Unknowns, mut entry: impl FnMut(usize, usize)) {
         for column in 0..unknowns.columns {
             let places = entries(unknowns, row, column);
             for col in places.into_iter().flatten() {
-                for row in places.into_iter().flatten() {
+                for row in places.into_iter().flatten().filter(|row| *row >= col) {
                     entry(row, col);
                 }
             }

@@ -12,7 +12,7 @@
 //!
 //! It is exact for small deformations, where `K_local = F_0 + B`, and for rubber without memory,
 //! where `F = F_0`. The contact enters `(F + B)⁻¹` through the displacements of the contact nodes
-//! alone: a dense system of `2 N` unknowns.
+//! alone, a dense system of two unknowns for each node that is in contact or nearly so.
 
 use super::block::Block;
 use super::local::NodeStiffness;
@@ -20,8 +20,8 @@ use super::mesh::{CENTRE, Element};
 use super::unknowns::Unknowns;
 use crate::rubber::Rheology;
 use crate::rubber::finite_strain::{IDENTITY, Symmetric, inverse};
-use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::{Mat, MatMut};
 use nalgebra::{Matrix2, Vector2};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
@@ -47,8 +47,8 @@ pub struct Memory {
     pivots: Vec<Block2>,
     /// Couplings of a row of nodes with the one above, and back.
     couplings: Vec<[Block2; 2]>,
-    /// Stiffness of the contact that is part of the factors, on all contact nodes alike.
-    mean_contact: f64,
+    /// Stiffness in Pa of the surface against the shortest waves.
+    modulus: f64,
     /// Compliance of the contact nodes: displacement at node `j` by a force at node 0.
     compliance: Vec<[[f64; 2]; 2]>,
     /// Forces by the displacement of the upper edge on the row below it, and on itself.
@@ -58,9 +58,10 @@ pub struct Memory {
 /// The contact at one Newton step.
 pub struct MemoryContact<'a> {
     memory: &'a Memory,
-    /// Stiffness of each contact node beyond the mean one.
+    /// The contact nodes that are stiff, and their stiffness.
+    nodes: Vec<usize>,
     stiffness: Vec<NodeStiffness>,
-    system: Option<PartialPivLu<f64>>,
+    system: PartialPivLu<f64>,
     edge_response: Vec<Pair2>,
 }
 
@@ -72,12 +73,7 @@ struct MeanState {
 
 impl Memory {
     /// Linearises the block about the row means of displacements.
-    pub fn new(
-        block: &Block,
-        displacements: &[f64],
-        follows: &[Vec<f64>],
-        mean_contact: f64,
-    ) -> Self {
+    pub fn new(block: &Block, displacements: &[f64], follows: &[Vec<f64>], modulus: f64) -> Self {
         let mesh = block.mesh();
         let unknowns = Unknowns { columns: mesh.columns, rows: mesh.rows() };
         let waves = mesh.columns / 2 + 1;
@@ -131,7 +127,7 @@ impl Memory {
             difference,
             pivots: Vec::new(),
             couplings: Vec::new(),
-            mean_contact,
+            modulus,
             compliance: Vec::new(),
             edge: [Pair2::zeros(); 2],
         };
@@ -169,7 +165,7 @@ impl Memory {
                 if row > 1 {
                     diagonal += at(row - 2)[1][1];
                 } else {
-                    diagonal[(1, 1)] += self.mean_contact;
+                    diagonal[(1, 1)] += AFLOAT * self.modulus;
                 }
             }
         }
@@ -187,8 +183,8 @@ impl Memory {
                 below[wave] -= self.couplings[row * waves + wave][0] * eliminated;
             }
         }
-        for wave in 0..waves {
-            right[wave] = self.pivots[wave] * right[wave];
+        for (lowest, pivot) in right[..waves].iter_mut().zip(&self.pivots) {
+            *lowest = pivot * *lowest;
         }
         for row in 1..=rows {
             let (below, above) = right.split_at_mut(row * waves);
@@ -270,21 +266,23 @@ impl Memory {
     /// Adds the contact of one Newton step: the stiffness of each contact node.
     pub fn with_contact(&self, contact: &[NodeStiffness]) -> MemoryContact<'_> {
         let n = self.unknowns.columns;
-        let stiffness: Vec<NodeStiffness> = contact
-            .iter()
-            .map(|k| [[k[0][0], k[0][1]], [k[1][0], k[1][1] - self.mean_contact]])
-            .collect();
-        let system = (n <= MOST_DENSE_COLUMNS).then(|| {
-            let entry = |i: usize, j: usize| {
-                let s = &self.compliance[(i / 2 + n - j / 2) % n][i % 2];
-                let k = &stiffness[j / 2];
-                let product = s[0] * k[0][j % 2] + s[1] * k[1][j % 2];
-                if i == j { product + 1.0 } else { product }
-            };
-            Mat::from_fn(2 * n, 2 * n, entry).partial_piv_lu()
-        });
+        let mut nodes: Vec<usize> =
+            (0..n).filter(|j| contact[*j][1][1] > FELT * self.modulus).collect();
+        if nodes.len() > MOST_NODES {
+            nodes.sort_by(|a, b| contact[*b][1][1].total_cmp(&contact[*a][1][1]));
+            nodes.truncate(MOST_NODES);
+        }
+        let entry = |i: usize, j: usize| {
+            let s = &self.compliance[(nodes[i / 2] + n - nodes[j / 2]) % n][i % 2];
+            let k = &contact[nodes[j / 2]];
+            let product = s[0] * k[0][j % 2] + s[1] * k[1][j % 2];
+            if i == j { product + 1.0 } else { product }
+        };
+        let size = 2 * nodes.len();
+        let system = Mat::from_fn(size, size, entry).partial_piv_lu();
+        let stiffness = nodes.iter().map(|j| contact[*j]).collect();
         let mut contact =
-            MemoryContact { memory: self, stiffness, system, edge_response: Vec::new() };
+            MemoryContact { memory: self, nodes, stiffness, system, edge_response: Vec::new() };
         let mut edge = vec![Pair2::zeros(); self.waves * (self.unknowns.rows + 1)];
         let top = self.unknowns.rows * self.waves;
         edge[top - self.waves] = -self.edge[0] * Complex64::from(n as f64);
@@ -297,26 +295,32 @@ impl Memory {
     }
 }
 
-/// Beyond this the dense system of the contact nodes costs more than it saves.
-const MOST_DENSE_COLUMNS: usize = 1024;
+/// Stiffness of a contact node, over that of the surface, from which the correction heeds it.
+const FELT: f64 = 1e-3;
+/// More nodes would make the dense system cost more than it saves; the stiffest are kept.
+const MOST_NODES: usize = 1024;
+/// Stiffness on all contact nodes that keeps the block from floating away, over that of the
+/// surface.
+const AFLOAT: f64 = 1e-4;
 
 impl MemoryContact<'_> {
     fn solve_own(&self, field: &mut [Pair2]) {
         let memory = self.memory;
         let n = memory.unknowns.columns;
         memory.solve(field);
-        let Some(system) = &self.system else { return };
-        let mut touching = vec![0.0; 2 * n];
-        memory.to_nodes(&field[..memory.waves], &mut touching);
-        let column = faer::MatMut::from_column_major_slice_mut(&mut touching, 2 * n, 1);
-        system.solve_in_place(column);
-        for (node, k) in touching.chunks_exact_mut(2).zip(&self.stiffness) {
-            let (x, z) = (node[0], node[1]);
-            node[0] = k[0][0] * x + k[0][1] * z;
-            node[1] = k[1][0] * x + k[1][1] * z;
+        let mut surface = vec![0.0; 2 * n];
+        memory.to_nodes(&field[..memory.waves], &mut surface);
+        let mut touching: Vec<f64> =
+            self.nodes.iter().flat_map(|j| [surface[2 * j], surface[2 * j + 1]]).collect();
+        let size = touching.len();
+        self.system.solve_in_place(MatMut::from_column_major_slice_mut(&mut touching, size, 1));
+        surface.fill(0.0);
+        for ((node, k), j) in touching.chunks_exact(2).zip(&self.stiffness).zip(&self.nodes) {
+            surface[2 * j] = k[0][0] * node[0] + k[0][1] * node[1];
+            surface[2 * j + 1] = k[1][0] * node[0] + k[1][1] * node[1];
         }
         let mut correction = vec![Pair2::zeros(); field.len()];
-        memory.to_waves(&touching, &mut correction[..memory.waves]);
+        memory.to_waves(&surface, &mut correction[..memory.waves]);
         memory.solve(&mut correction);
         for (wave, correction) in field.iter_mut().zip(&correction) {
             *wave -= correction;
@@ -374,9 +378,8 @@ impl MeanState {
         let f = &self.deformation;
         for (kind, gradients) in element.gradients.iter().enumerate() {
             let weight = element.weights[kind];
-            let gradient = [0, 2].map(|node| {
-                [0, 1].map(|c| gradients[node][c] + gradients[node + 1][c] * phase)
-            });
+            let gradient = [0, 2]
+                .map(|node| [0, 1].map(|c| gradients[node][c] + gradients[node + 1][c] * phase));
             for (from, by) in gradient.iter().enumerate() {
                 for direction in 0..2 {
                     // δF = e_direction ⊗ gradient.

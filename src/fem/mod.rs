@@ -1,4 +1,24 @@
-//! Finite deformation.
+//! Rubber at finite deformation on a rigid periodic profile.
+//!
+//! A block of one period, in plane strain, of a neo-Hookean (or linear) spring with Maxwell
+//! branches in finite linear viscoelasticity (thesis, chapters 2 and 4) slides without friction of
+//! its own over the profile; all loss is hysteresis. Two solvers, each the check of the other:
+//!
+//! - [`steady`]: the stationary field in the frame of the profile. One Newton solve a pressure.
+//! - [`transient`]: the thesis' procedure, time steps of a block that is pressed on and dragged.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`profile`] | the rigid profile: height, slope and curvature anywhere |
+//! | [`mesh`] | graded rows of parallelograms, the integration of an element |
+//! | [`filter`] | the flow rule of a steady field along a row |
+//! | [`row`], [`block`], [`unknowns`] | internal forces and their tangent with memory |
+//! | [`local`], [`memory`] | the two factors of the preconditioner |
+//! | [`error`] | what can go wrong |
+//!
+//! Elements are bilinear; their volumetric part is integrated at the centre alone (selective
+//! reduced integration), which keeps them from locking at ν = 0.49.
+
 pub mod block;
 pub mod error;
 pub mod filter;

@@ -40,7 +40,9 @@ struct Point {
     deformation: Tensor,
     stress: Symmetric,
     inverse: Symmetric,
-    volumetric: f64,
+    /// μ or c.
+    modulus: f64,
+    /// σ.
     pressure: f64,
 }
 
@@ -64,7 +66,7 @@ impl Row {
             deformation: [1.0, 0.0, 0.0, 1.0],
             stress: [0.0; 3],
             inverse: IDENTITY,
-            volumetric: 0.0,
+            modulus: 0.0,
             pressure: 0.0,
         };
         Self {
@@ -186,8 +188,9 @@ impl Row {
         power
     }
 
-    /// Stiffness of one element if every internal tensor followed its own point at once by the
-    /// fraction `follows` of each branch: the tangent without its memory.
+    /// Stiffness of one element if every internal tensor were that of its own point and followed
+    /// it at once by the fraction `follows` of each branch: the tangent without its memory,
+    /// symmetric.
     pub fn local_stiffness(
         &self,
         material: &Material,
@@ -196,46 +199,40 @@ impl Row {
     ) -> [[f64; 8]; 8] {
         let branches = material.filters.len();
         let mut stiffness = [[0.0; 8]; 8];
-        let mut changed = vec![[0.0; 3]; branches];
-        for kind in 0..POINTS {
-            let gradients = &self.element.gradients[kind];
+        let followed: f64 = material
+            .rubber
+            .branches
+            .iter()
+            .zip(follows)
+            .map(|(spring, follows)| spring.shear * follows)
+            .sum();
+        for (kind, gradients) in self.element.gradients.iter().enumerate() {
             let weight = self.element.weights[kind];
-            let at = kind * self.columns + column;
-            let point = &self.points[at];
-            let internal = &self.internal[at * branches..(at + 1) * branches];
-            // Stress for a unit of each strain component.
-            let moduli = [0, 1, 2].map(|component| {
-                let mut strain = [0.0; 3];
-                strain[component] = 1.0;
-                for (changed, follows) in changed.iter_mut().zip(follows) {
-                    *changed = strain.map(|c| follows * c);
-                }
+            let point = &self.points[kind * self.columns + column];
+            let relaxed = &self.relaxed[column * branches..(column + 1) * branches];
+            let volumetric =
+                point.modulus - relaxed.iter().zip(follows).map(|(c, f)| c * f).sum::<f64>();
+            let stress_of = |strain: &Symmetric| {
+                let turned = sandwich(&point.inverse, strain);
                 if kind == CENTRE {
-                    let relaxed = &self.relaxed[column * branches..(column + 1) * branches];
-                    point.volumetric_tangent(&strain, internal, relaxed, &changed)
+                    let pressure = volumetric * contract(&point.inverse, strain);
+                    [0, 1, 2].map(|i| pressure * point.inverse[i] - point.pressure * turned[i])
                 } else {
-                    point.shear_tangent(&material.rubber, &strain, internal, &changed)
+                    turned.map(|s| (point.modulus - followed) * s)
                 }
-            });
+            };
             let f = &point.deformation;
             for (node, gradient) in gradients.iter().enumerate() {
                 for direction in 0..2 {
                     let mut df = [0.0; 4];
-                    df[2 * direction] = gradient[0];
-                    df[2 * direction + 1] = gradient[1];
-                    let strain = strain_change(f, &df);
-                    let stress = [0, 1, 2].map(|i| {
-                        moduli[0][i] * strain[0]
-                            + moduli[1][i] * strain[1]
-                            + moduli[2][i] * strain[2]
-                    });
-                    let elastic = times(f, &stress, weight);
+                    df[2 * direction..2 * direction + 2].copy_from_slice(gradient);
+                    let elastic = times(f, &stress_of(&strain_change(f, &df)), weight);
                     let geometric = times(&df, &point.stress, weight);
+                    let traction = [0, 1, 2, 3].map(|i| elastic[i] + geometric[i]);
                     for (other, gradient) in gradients.iter().enumerate() {
                         for i in 0..2 {
                             stiffness[2 * other + i][2 * node + direction] +=
-                                (elastic[2 * i] + geometric[2 * i]) * gradient[0]
-                                    + (elastic[2 * i + 1] + geometric[2 * i + 1]) * gradient[1];
+                                traction[2 * i] * gradient[0] + traction[2 * i + 1] * gradient[1];
                         }
                     }
                 }
@@ -267,7 +264,7 @@ impl Point {
             }
         }
         self.inverse = if neo_hookean { inverse(c) } else { IDENTITY };
-        self.volumetric =
+        self.modulus =
             rubber.equilibrium.shear + springs.iter().map(|spring| spring.shear).sum::<f64>();
         Ok(())
     }
@@ -284,7 +281,7 @@ impl Point {
         self.stress = rubber.volumetric_stress(&rubber.equilibrium, c, &IDENTITY);
         let neo_hookean = rubber.rheology == Rheology::NeoHookean;
         let volume = if neo_hookean { determinant(c) } else { 1.0 };
-        self.volumetric = half(rubber.equilibrium.volumetric) * volume;
+        self.modulus = half(rubber.equilibrium.volumetric) * volume;
         self.pressure = half(rubber.equilibrium.volumetric) * (volume - 1.0);
         for ((spring, c_i), relaxed) in rubber.branches.iter().zip(internal).zip(relaxed) {
             let stress = rubber.volumetric_stress(spring, c, c_i);
@@ -297,7 +294,7 @@ impl Point {
                 *c_i = IDENTITY;
             }
             *relaxed = half(spring.volumetric) * volume;
-            self.volumetric += *relaxed;
+            self.modulus += *relaxed;
             self.pressure += half(spring.volumetric) * (volume - 1.0);
         }
         self.inverse = if neo_hookean { inverse(c) } else { IDENTITY };
@@ -312,7 +309,7 @@ impl Point {
         internal: &[Symmetric],
         changed: &[Symmetric],
     ) -> Symmetric {
-        let mut stress = sandwich(&self.inverse, strain).map(|s| self.volumetric * s);
+        let mut stress = sandwich(&self.inverse, strain).map(|s| self.modulus * s);
         for ((spring, g), change) in rubber.branches.iter().zip(internal).zip(changed) {
             let relaxed = sandwich(g, change);
             (0..3).for_each(|i| stress[i] -= spring.shear * relaxed[i]);
@@ -328,7 +325,7 @@ impl Point {
         relaxed: &[f64],
         changed: &[Symmetric],
     ) -> Symmetric {
-        let mut pressure = self.volumetric * contract(&self.inverse, strain);
+        let mut pressure = self.modulus * contract(&self.inverse, strain);
         for ((c, g), change) in relaxed.iter().zip(internal).zip(changed) {
             pressure -= c * contract(g, change);
         }

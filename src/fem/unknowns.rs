@@ -23,7 +23,7 @@ impl Unknowns {
     }
 
     /// Number of unknowns.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.own() + 1
     }
 
@@ -56,7 +56,7 @@ impl Unknowns {
     /// what holds the block; in its place stands the mean x displacement of the contact nodes.
     pub fn reduce(&self, forces: &[f64], mean_displacement: f64) -> Vec<f64> {
         let upper = self.upper_edge();
-        let mut reduced = Vec::with_capacity(self.len());
+        let mut reduced = Vec::with_capacity(self.count());
         reduced.extend_from_slice(&forces[..upper]);
         reduced.extend(forces[upper..].iter().skip(1).step_by(2));
         reduced.push(mean_displacement);

@@ -9,8 +9,7 @@ use crate::numerics::bracket::{self, End};
 const MOST_SOLVES: usize = 40;
 /// Power of the area with which the pressure of a Hertz contact grows.
 const HERTZ: f64 = 2.0;
-/// The first pressure over the modulus, and the largest step up in ln p.
-const FIRST_PRESSURE: f64 = 0.01;
+/// Largest step up in ln p.
 const LARGEST_STEP: f64 = 1.0;
 
 impl SteadyContact {
@@ -33,7 +32,7 @@ impl SteadyContact {
                 return Err(FemError::OutOfRange { quantity, value, range: "between 0 and 1" });
             }
         }
-        let mut guess = (FIRST_PRESSURE * self.scene.soft_modulus).ln();
+        let mut guess = self.scene.first_pressure.ln();
         let (mut lower, mut upper): (Option<End>, Option<End>) = (None, None);
         let mut previous = 0.0;
         let mut best: Option<(f64, SteadySolution)> = None;

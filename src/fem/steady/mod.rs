@@ -58,6 +58,8 @@ pub const HEIGHT_RANGE: RangeInclusive<f64> = 0.1..=10.0;
 
 /// Columns of the coarsest mesh on the shortest wave of the profile.
 const COARSEST_PER_WAVE: f64 = 24.0;
+/// Pressure of the first contact over the modulus at the shortest wave.
+const FIRST_PRESSURE: f64 = 5e-3;
 /// Ratio of the columns of neighbouring meshes. With twice the columns the small waves that a
 /// coarse mesh leaves between its nodes become stresses from which Newton's method does not
 /// recover.
@@ -111,12 +113,15 @@ impl SteadyContact {
             finite.branches.iter().map(|branch| speed * branch.relaxation_time).collect();
         let period = profile.period();
         let modulus = |q: f64| rubber.reduced_modulus(q * speed).norm();
+        // One tip carries all; a contact of a few percent of the shortest wave.
+        let waves = profile.shortest_waves();
+        let first_pressure = FIRST_PRESSURE * modulus(TAU * waves / period) / waves;
         let scene = Scene {
             rubber: finite,
             relaxation_lengths,
             heights: Heights::of(&profile, 8 * options.columns),
             profile,
-            soft_modulus: modulus(TAU / period),
+            first_pressure,
             stiff_modulus: modulus(PI * options.columns as f64 / period),
         };
         Ok(Self { scene: Arc::new(scene), options, speed, path: None })

@@ -90,8 +90,7 @@ struct NodeLaw {
 }
 
 /// Accuracy of the linear solves.
-const FORCING: f64 = 1e-4;
-const FINAL_FORCING: f64 = 1e-3;
+const FORCING: f64 = 1e-3;
 const MOST_KRYLOV: usize = 400;
 /// A step goes this far towards a vanishing force or gap.
 const TO_BOUNDARY: f64 = 0.98;
@@ -134,14 +133,12 @@ impl Problem<'_> {
             };
             active = Some(now);
             let gap_error = imbalance.gap_errors.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
-            if std::env::var("LOG").is_ok() {
-                eprintln!("{law:?} {step} residual {:.1e} gap {:.1e} settled {settled} krylov {}", imbalance.norm, gap_error/self.heights.range, cost.krylov_iterations);
-            }
-            cost.residual = imbalance.norm.max(gap_error / self.heights.range);
+            cost.residual = imbalance.norm.max(gap_error / self.heights.roughness);
             if settled && cost.residual <= goal.residual {
                 return Ok(cost);
             }
-            let (change, iterations) = self.direction(state, &imbalance, &nodes, &memory).ok_or(Stuck)?;
+            let (change, iterations) =
+                self.direction(state, &imbalance, &nodes, &memory).ok_or(Stuck)?;
             cost.newton_steps += 1;
             cost.krylov_iterations += iterations;
             let growth = if step < 5 { 10.0 } else { 2.0 };
@@ -201,7 +198,7 @@ impl Problem<'_> {
                 }
                 Complementarity::ActiveSet => {
                     let gap = gap + error;
-                    let relative = FORCE_OVER_GAP * mean_force / self.heights.range;
+                    let relative = FORCE_OVER_GAP * mean_force / self.heights.roughness;
                     if force > relative * gap {
                         let stiffness = CONTACT_STIFFNESS * self.modulus;
                         NodeLaw { stiffness, push: -stiffness * gap, active: true }
@@ -243,12 +240,17 @@ impl Problem<'_> {
         }
         let local = level.pattern.factorise(&level.block, &contact)?;
         let memory = memory.with_contact(&contact);
-        precondition(&memory, &local, &mut right);
-        let forcing = if nodes.iter().all(|node| node.active) { FORCING } else { FINAL_FORCING };
-        let tolerance = forcing * euclidean_norm(&right);
+        // Preconditioned from the right, so that the norm is that of the unbalanced forces: in
+        // displacements the stiff resistance to changes of volume would not be seen.
+        right[unknowns.own()] *= self.modulus;
+        let tolerance = FORCING * euclidean_norm(&right);
         let limits = KrylovLimits { tolerance, max_iterations: MOST_KRYLOV };
+        let mut scratch = vec![0.0; unknowns.count()];
         let operator = |x: &[f64], out: &mut [f64]| {
-            let changes = unknowns.expand(x);
+            scratch.copy_from_slice(x);
+            scratch[unknowns.own()] /= self.modulus;
+            precondition(&memory, &local, &mut scratch);
+            let changes = unknowns.expand(&scratch);
             let mut forces = level.block.tangent(&changes);
             for (j, k) in contact.iter().enumerate() {
                 let [x, z] = [changes[2 * j], changes[2 * j + 1]];
@@ -257,9 +259,11 @@ impl Problem<'_> {
             }
             let mean = unknowns.mean_contact_displacement(&changes);
             out.copy_from_slice(&unknowns.reduce(&forces, mean));
-            precondition(&memory, &local, out);
+            out[unknowns.own()] *= self.modulus;
         };
         let report = gmres(operator, &mut right, limits);
+        right[unknowns.own()] /= self.modulus;
+        precondition(&memory, &local, &mut right);
         let finite = right.iter().all(|x| x.is_finite());
         finite.then(|| (unknowns.expand(&right), report.iterations))
     }
@@ -295,9 +299,6 @@ impl Problem<'_> {
         }
         if length < SHORTEST_STEP {
             return Err(Stuck);
-        }
-        if std::env::var("LOG").is_ok() {
-            eprintln!("  long {:.3} gaps {:.3} forces {:.3}", LONGEST_STEP * self.profile.period() / longest, to_boundary(&state.gaps, &gaps), to_boundary(&state.forces, &forces));
         }
         let from = state.clone();
         for _ in 0..12 {

@@ -26,8 +26,8 @@ pub(super) struct Scene {
     pub relaxation_lengths: Vec<f64>,
     pub profile: RigidProfile,
     pub heights: Heights,
-    /// Modulus in Pa at the longest wave, which scales the first pressure.
-    pub soft_modulus: f64,
+    /// A mean pressure in Pa at which only the tips of some of the shortest waves are touched.
+    pub first_pressure: f64,
     /// Modulus in Pa at the shortest wave of the mesh.
     pub stiff_modulus: f64,
 }
@@ -55,12 +55,13 @@ struct Waypoint {
     mesh: Mesh,
 }
 
-/// Barrier in heights of the profile on the way.
+/// Barrier over the roughness on the way.
 const BARRIER: f64 = 1e-3;
 /// Barrier before the contact set is closed.
 const LOW_BARRIER: f64 = 1e-4;
-/// The first pressure over the modulus: a contact of a few percent.
-const FIRST_PRESSURE: f64 = 5e-3;
+/// Barrier with which a path begins, and the ratio by which it is lowered then.
+const FIRST_BARRIER: f64 = 0.1;
+const LOWER_BARRIER: f64 = 0.3;
 /// First and largest ratio of two pressures, and the ratio at which a path ends.
 const FIRST_STEP: f64 = 1.6;
 const LARGEST_STEP: f64 = 2.5;
@@ -69,8 +70,10 @@ const SMALLEST_STEP: f64 = 1.02;
 const NEXT_ENTRY: f64 = 0.7;
 /// Shear of the elements beyond which rows are shifted anew.
 const MOST_SHEAR: f64 = 0.35;
+/// Shear at which it is worth while where the path is stuck.
+const LEAST_SHEAR: f64 = 0.05;
 /// On the way the path need not be met exactly.
-const ON_THE_WAY: Goal = Goal { residual: 1e-3, most_steps: 50 };
+const ON_THE_WAY: Goal = Goal { residual: 1e-3, most_steps: 25 };
 const AT_THE_END: Goal = Goal { residual: RESIDUAL_TOLERANCE, most_steps: 30 };
 /// Residual of a solution; see [`super::solution::SteadySolution::residual`].
 const RESIDUAL_TOLERANCE: f64 = 1e-9;
@@ -89,17 +92,21 @@ impl Scene {
 impl Path {
     /// A slight contact, at most at the wanted pressure.
     pub fn start(scene: &Arc<Scene>, mesh: Mesh, wanted: f64) -> Result<Self, Stuck> {
-        let pressure = wanted.min(FIRST_PRESSURE * scene.soft_modulus);
-        let state = State::above(&mesh, &scene.profile, &scene.heights, pressure);
+        let pressure = wanted.min(scene.first_pressure);
+        let mut barrier = FIRST_BARRIER;
+        let state =
+            State::above(&mesh, &scene.profile, pressure, barrier * scene.heights.roughness);
         let level = scene.level(mesh);
         let cost = Cost::default();
         let scene = Arc::clone(scene);
         let mut path =
             Self { scene, level, state, pressure, step: FIRST_STEP, cost, passed: Vec::new() };
-        let mut barrier = 0.3;
-        while barrier > BARRIER {
-            barrier = (0.3 * barrier).max(BARRIER);
+        loop {
             path.converge(pressure, barrier, ON_THE_WAY)?;
+            if barrier <= BARRIER {
+                break;
+            }
+            barrier = (LOWER_BARRIER * barrier).max(BARRIER);
         }
         path.pass();
         Ok(path)
@@ -115,16 +122,23 @@ impl Path {
             };
             // Two equal steps where one is all but enough.
             let before = self.cost;
-            self.stand_upright();
+            self.stand_upright(MOST_SHEAR);
             match self.converge(next, BARRIER, ON_THE_WAY) {
                 Ok(()) => {
                     self.pressure = next;
                     self.pass();
                     let steps = self.cost.newton_steps - before.newton_steps;
-                    let factor = if steps < 7 { 1.5 } else if steps > 12 { 0.7 } else { 1.0 };
+                    let factor = if steps < 7 {
+                        1.5
+                    } else if steps > 12 {
+                        0.7
+                    } else {
+                        1.0
+                    };
                     self.step = self.step.powf(factor).min(LARGEST_STEP);
                 }
                 Err(Stuck) => {
+                    self.stand_upright(LEAST_SHEAR);
                     self.step = self.step.sqrt();
                     if self.step < SMALLEST_STEP {
                         return Err(Stuck);
@@ -192,10 +206,10 @@ impl Path {
 
     /// The exact state at this pressure and its residual; the path itself stays behind the barrier.
     pub fn finish(&mut self) -> Result<(State, f64), Stuck> {
-        self.stand_upright();
+        self.stand_upright(LEAST_SHEAR);
         let mut state = self.state.clone();
         let pressure = self.pressure;
-        let low = Complementarity::Barrier(LOW_BARRIER * self.scene.heights.range);
+        let low = Complementarity::Barrier(LOW_BARRIER * self.scene.heights.roughness);
         let mut problem = self.problem(pressure);
         let first = problem.converge(&mut state, low, ON_THE_WAY);
         let last = first.and_then(|cost| {
@@ -221,9 +235,10 @@ impl Path {
     /// product of the barrier that has the same `λ - k g(u)`.
     fn centre(&mut self) {
         let spacing = self.level.block.mesh().spacing();
-        let product = BARRIER * self.scene.heights.range * self.pressure * spacing;
+        let product = BARRIER * self.scene.heights.roughness * self.pressure * spacing;
         let stiffness = self.scene.stiff_modulus;
-        for (j, (force, gap)) in self.state.forces.iter_mut().zip(&mut self.state.gaps).enumerate() {
+        for (j, (force, gap)) in self.state.forces.iter_mut().zip(&mut self.state.gaps).enumerate()
+        {
             let [x, z] = [self.state.displacements[2 * j], self.state.displacements[2 * j + 1]];
             let open = z - self.scene.profile.at(j as f64 * spacing + x).height;
             let half = 0.5 * (*force - stiffness * open);
@@ -250,7 +265,7 @@ impl Path {
     /// Converges at a pressure; the state stays what it was if that fails.
     fn converge(&mut self, pressure: f64, barrier: f64, goal: Goal) -> Result<(), Stuck> {
         let mut state = self.state.clone();
-        let law = Complementarity::Barrier(barrier * self.scene.heights.range);
+        let law = Complementarity::Barrier(barrier * self.scene.heights.roughness);
         let cost = self.problem(pressure).converge(&mut state, law, goal)?;
         self.state = state;
         self.spend(cost);
@@ -262,15 +277,28 @@ impl Path {
         self.cost.krylov_iterations += cost.krylov_iterations;
     }
 
-    /// Shifts the rows so that the mean shear leaves the elements upright.
-    fn stand_upright(&mut self) {
-        let mesh = self.level.block.mesh();
-        let shear = self.state.shear(mesh);
-        if (mesh.skew + shear).abs() <= MOST_SHEAR {
-            return;
+    /// Shifts the rows so that the mean shear leaves the elements upright, if they are further off
+    /// than that; says whether it did.
+    fn stand_upright(&mut self, most_shear: f64) -> bool {
+        let mesh = self.level.block.mesh().clone();
+        let shear = self.state.shear(&mesh);
+        if (mesh.skew + shear).abs() <= most_shear {
+            return false;
         }
         let upright = Mesh { skew: -shear, ..mesh.clone() };
-        self.state = transfer(&self.state, mesh, &upright);
-        self.level.block = Block::new(upright, self.level.block.material().clone());
+        let material = self.level.block.material().clone();
+        let skewed = std::mem::replace(
+            &mut self.state,
+            State { displacements: vec![], forces: vec![], gaps: vec![] },
+        );
+        self.state = transfer(&skewed, &mesh, &upright);
+        self.level.block = Block::new(upright, material.clone());
+        self.centre();
+        if self.converge(self.pressure, BARRIER, ON_THE_WAY).is_ok() {
+            return true;
+        }
+        self.state = skewed;
+        self.level.block = Block::new(mesh, material);
+        false
     }
 }

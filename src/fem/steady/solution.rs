@@ -77,7 +77,10 @@ impl SteadySolution {
             })
             .collect();
         let area = (0..2 * n)
-            .map(|k| touching_part(&nodes, k / 2, k % 2 == 1) * step(if k % 2 == 1 { k / 2 } else { (k / 2 + n - 1) % n }))
+            .map(|k| {
+                touching_part(&nodes, k / 2, k % 2 == 1)
+                    * step(if k % 2 == 1 { k / 2 } else { (k / 2 + n - 1) % n })
+            })
             .sum::<f64>();
         let mean_height: f64 = (0..n)
             .map(|j| {
@@ -108,9 +111,8 @@ impl SteadySolution {
 /// along a straight line, as it does at the edge of any smooth contact.
 fn touching_part(nodes: &[ContactNode], node: usize, after: bool) -> f64 {
     let n = nodes.len();
-    let neighbour = |offset: usize| {
-        &nodes[if after { node + offset } else { node + n - offset } % n]
-    };
+    let neighbour =
+        |offset: usize| &nodes[if after { node + offset } else { node + n - offset } % n];
     let here = nodes[node].pressure;
     if here <= 0.0 {
         return 0.0;

@@ -15,15 +15,27 @@ pub(super) struct State {
 }
 
 impl State {
-    /// An undeformed block just above the profile under a small `pressure` in Pa.
-    pub fn above(mesh: &Mesh, profile: &RigidProfile, heights: &Heights, pressure: f64) -> Self {
-        let lift = heights.highest + 0.1 * heights.range;
+    /// An undeformed block above the profile under a small `pressure` in Pa, as high as the
+    /// `barrier` in m carries it: `Σ_j barrier / gap_j = N`.
+    pub fn above(mesh: &Mesh, profile: &RigidProfile, pressure: f64, barrier: f64) -> Self {
+        let heights = profile.sample(mesh.columns);
+        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let carried = |clearance: f64| {
+            heights.iter().map(|z| barrier / (highest - z + clearance)).sum::<f64>()
+        };
+        // The highest node alone carries at least its share, all together no more than that.
+        let wanted = mesh.columns as f64;
+        let (mut low, mut high) = (barrier / wanted, barrier);
+        while high / low > 1.0 + 1e-12 {
+            let middle = (low * high).sqrt();
+            if carried(middle) > wanted { low = middle } else { high = middle }
+        }
+        let lift = highest + high;
         let mut displacements = vec![0.0; 2 * mesh.columns * (mesh.rows() + 1)];
         displacements.iter_mut().skip(1).step_by(2).for_each(|z| *z = lift);
-        let gaps: Vec<f64> = profile.sample(mesh.columns).iter().map(|z| lift - z).collect();
-        let inverse = gaps.iter().map(|gap| 1.0 / gap).sum::<f64>();
-        // Forces for which the product with the gap is the same everywhere.
-        let forces = gaps.iter().map(|gap| pressure * mesh.period / (gap * inverse)).collect();
+        let gaps: Vec<f64> = heights.iter().map(|z| lift - z).collect();
+        let force = barrier * pressure * mesh.spacing();
+        let forces = gaps.iter().map(|gap| force / gap).collect();
         Self { displacements, forces, gaps }
     }
 
@@ -33,23 +45,28 @@ impl State {
     }
 }
 
-/// Extremes of the profile in m.
+/// Heights of the profile in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Heights {
-    pub highest: f64,
-    /// Peak to valley; for a flat profile a small length in its place.
-    pub range: f64,
     pub mean: f64,
+    /// Mean peak to valley over pieces as long as the shortest wave: the scale of gaps next to a
+    /// contact. For a flat profile a small length in its place.
+    pub roughness: f64,
 }
 
 impl Heights {
     pub fn of(profile: &RigidProfile, points: usize) -> Self {
         let heights = profile.sample(points);
-        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
         let mean = heights.iter().sum::<f64>() / points as f64;
-        // Gaps and their errors are measured in this.
-        let range = (highest - lowest).max(1e-6 * profile.period());
-        Self { highest, range, mean }
+        let pieces = profile.shortest_waves();
+        let piece = (points as f64 / pieces).ceil() as usize;
+        let ranges = heights.chunks(piece).map(|piece| {
+            let extremes = piece
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(*z), b.max(*z)));
+            extremes.1 - extremes.0
+        });
+        let roughness = ranges.sum::<f64>() / pieces;
+        Self { mean, roughness: roughness.max(1e-6 * profile.period() / pieces) }
     }
 }

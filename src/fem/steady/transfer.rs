@@ -29,8 +29,7 @@ pub(super) fn transfer(state: &State, from: &Mesh, to: &Mesh) -> State {
     let forces = (0..to.columns)
         .map(|j| ratio * linear(from.columns, place(j), |j| state.forces[j]))
         .collect();
-    let gaps =
-        (0..to.columns).map(|j| linear(from.columns, place(j), |j| state.gaps[j])).collect();
+    let gaps = (0..to.columns).map(|j| linear(from.columns, place(j), |j| state.gaps[j])).collect();
     State { displacements, forces, gaps }
 }
 
