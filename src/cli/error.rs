@@ -3,6 +3,8 @@
 use std::error::Error;
 
 use crate::contact::ContactError;
+use crate::fem::error::FemError;
+use crate::fem::transient::TransientError;
 use crate::surface::synthesis::SynthesisError;
 
 type Cause = Box<dyn Error + Send + Sync>;
@@ -69,6 +71,26 @@ impl From<ContactError> for CliError {
             ContactError::NotConverged { .. } | ContactError::AreaNotReached { .. } => {
                 Self::failure(error)
             }
+        }
+    }
+}
+
+impl From<FemError> for CliError {
+    fn from(error: FemError) -> Self {
+        match error {
+            FemError::Rubber(_) | FemError::OutOfRange { .. } => Self::input(error),
+            FemError::PathEnded { .. } | FemError::AreaNotReached { .. } => Self::failure(error),
+        }
+    }
+}
+
+impl From<TransientError> for CliError {
+    fn from(error: TransientError) -> Self {
+        match error {
+            TransientError::Stopped { .. } => Self::failure(error),
+            TransientError::Rubber(_)
+            | TransientError::OutOfRange { .. }
+            | TransientError::PeriodMismatch { .. } => Self::input(error),
         }
     }
 }

@@ -7,11 +7,12 @@ use std::time::Instant;
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
+use super::material::MaterialOptions;
+use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{aligned, json, note, print, significant, write_file};
 use crate::cli::{CliError, values};
 use crate::contact::{ContactSolution, SlidingContact};
-use crate::rubber::{Rubber, read_rubber};
 
 /// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
 const AREA_TOLERANCE: f64 = 1e-6;
@@ -63,32 +64,6 @@ pub(in crate::cli) struct Bem {
     fields: Option<PathBuf>,
 }
 
-/// The rubber.
-#[derive(Debug, Args)]
-struct MaterialOptions {
-    /// Rubber as a TOML file, see data/rubber [default: Table 2.1 of the thesis].
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["modulus", "poisson"])]
-    rubber: Option<PathBuf>,
-    /// Young's modulus in MPa of an elastic half-space in place of a rubber; with --poisson.
-    #[arg(long, value_name = "MPA", requires = "poisson", value_parser = values::positive, allow_negative_numbers = true)]
-    modulus: Option<f64>,
-    /// Poisson ratio of the elastic half-space, 0 to 0.5; with --modulus.
-    #[arg(long, value_name = "NU", requires = "modulus", value_parser = values::finite, allow_negative_numbers = true)]
-    poisson: Option<f64>,
-}
-
-impl MaterialOptions {
-    fn rubber(&self) -> Result<Rubber, CliError> {
-        match (&self.rubber, self.modulus, self.poisson) {
-            (Some(path), _, _) => read_rubber(path).map_err(CliError::input),
-            (None, Some(modulus_mpa), Some(poisson_ratio)) => {
-                Ok(Rubber::elastic(modulus_mpa * 1e6, poisson_ratio))
-            }
-            _ => Ok(Rubber::table_2_1()),
-        }
-    }
-}
-
 /// What is printed; the names are the keys of the JSON object.
 #[derive(Debug, Serialize)]
 struct Summary {
@@ -109,7 +84,7 @@ impl Bem {
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
-        self.refuse_to_overwrite_input()?;
+        refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;
         let start = Instant::now();
         let speed = self.speed / 1e3;
         let mut contact = SlidingContact::new(&rubber, speed, shape.period, &shape.heights)?;
@@ -142,20 +117,8 @@ impl Bem {
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
 
-    fn refuse_to_overwrite_input(&self) -> Result<(), CliError> {
-        let Some(fields) = &self.fields else { return Ok(()) };
-        let same = |input: &Path| match (input.canonicalize(), fields.canonicalize()) {
-            (Ok(input), Ok(fields)) => input == fields,
-            _ => false,
-        };
-        let inputs = [self.shape.profile.as_deref(), self.material.rubber.as_deref()];
-        match inputs.into_iter().flatten().find(|input| same(input)) {
-            Some(input) => Err(CliError::input(format!(
-                "--fields would overwrite the input {}: choose another file",
-                input.display()
-            ))),
-            None => Ok(()),
-        }
+    fn inputs(&self) -> [Option<&Path>; 2] {
+        [self.shape.profile.as_deref(), self.material.file()]
     }
 }
 

@@ -1,8 +1,13 @@
 //! `asperity solve`: a single contact problem.
 
 mod bem;
+mod fem;
+mod fem_output;
+mod material;
 mod profile_file;
 mod shape;
+
+use std::path::Path;
 
 use clap::Subcommand;
 
@@ -11,12 +16,37 @@ use super::CliError;
 #[derive(Debug, Subcommand)]
 pub(super) enum Solve {
     Bem(Box<bem::Bem>),
+    Fem(Box<fem::Fem>),
 }
 
 impl Solve {
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         match self {
             Self::Bem(bem) => bem.run(quiet),
+            Self::Fem(fem) => fem.run(quiet),
         }
+    }
+}
+
+/// Refuses an output that is one of the inputs.
+///
+/// # Errors
+/// [`CliError::Input`] naming the option and the file.
+fn refuse_to_overwrite(
+    output: Option<&Path>,
+    option: &str,
+    inputs: &[Option<&Path>],
+) -> Result<(), CliError> {
+    let Some(output) = output else { return Ok(()) };
+    let same = |input: &Path| match (input.canonicalize(), output.canonicalize()) {
+        (Ok(input), Ok(output)) => input == output,
+        _ => false,
+    };
+    match inputs.iter().flatten().find(|input| same(input)) {
+        Some(input) => Err(CliError::input(format!(
+            "{option} would overwrite the input {}: choose another file",
+            input.display()
+        ))),
+        None => Ok(()),
     }
 }

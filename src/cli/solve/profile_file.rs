@@ -54,6 +54,7 @@ fn parse_profile(text: &str, unit: LengthUnit) -> Result<Shape, Located> {
                 .into()
         }),
         heights,
+        waves: Vec::new(),
     })
 }
 

@@ -44,7 +44,7 @@ pub(super) struct ShapeOptions {
     /// Grid points over the period, 8 to 16777216 [default: the points of --profile; else the power of two
     /// with 64 or more on the shortest wave, at least 1024].
     #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
-    points: Option<usize>,
+    pub(super) points: Option<usize>,
 }
 
 /// One period of a profile.
@@ -54,6 +54,8 @@ pub(super) struct Shape {
     pub(super) period: f64,
     /// Heights in m at equidistant points.
     pub(super) heights: Vec<f64>,
+    /// The sines that the heights are samples of, if they are.
+    pub(super) waves: Vec<Wave>,
     /// What the user should know about it.
     pub(super) warning: Option<String>,
 }
@@ -91,7 +93,8 @@ fn superpose(waves: &[Wave], points: Option<usize>) -> Result<Shape, String> {
         .collect();
     let most = counts.fold(1.0, f64::max);
     let points = grid_points(most, points)?;
-    Ok(Shape { period, heights: wave::sample(&fitted, period, points), warning: None })
+    let heights = wave::sample(&fitted, period, points);
+    Ok(Shape { period, heights, waves: fitted, warning: None })
 }
 
 /// The smallest length that all wavelengths divide, in the unit of the wavelengths.

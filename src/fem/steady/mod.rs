@@ -49,6 +49,38 @@ impl BlockOptions {
     pub fn new(columns: usize) -> Self {
         Self { columns, height_ratio: 0.75, grading: Grading { first: 1.0, growth: 1.2 } }
     }
+
+    /// The mesh of a block of one `period` in m, not skewed.
+    pub fn mesh(&self, period: f64) -> Mesh {
+        Mesh::graded(self.columns, period, self.height_ratio * period, self.grading)
+    }
+
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// [`FemError::OutOfRange`] for the first one that is not.
+    pub fn check(&self, period: f64) -> Result<(), FemError> {
+        let out_of_range =
+            |quantity, value, range| Err(FemError::OutOfRange { quantity, value, range });
+        if !(period > 0.0 && period.is_finite()) {
+            return out_of_range("the period in m", period, "positive and finite");
+        }
+        if !COLUMNS_RANGE.contains(&self.columns) {
+            return out_of_range("the number of columns", self.columns as f64, "8 to 65536");
+        }
+        if !HEIGHT_RANGE.contains(&self.height_ratio) {
+            let height = self.height_ratio;
+            return out_of_range("the height of the block in periods", height, "0.1 to 10");
+        }
+        let Grading { first, growth } = self.grading;
+        if !(0.1..=10.0).contains(&first) {
+            return out_of_range("the height of the first row in columns", first, "0.1 to 10");
+        }
+        if !(1.0..=3.0).contains(&growth) {
+            return out_of_range("the growth of the rows", growth, "1 to 3");
+        }
+        Ok(())
+    }
 }
 
 /// Columns for which a contact can be asked.
@@ -108,7 +140,8 @@ impl SteadyContact {
         options: BlockOptions,
     ) -> Result<Self, FemError> {
         let finite = FiniteStrainRubber::new(rubber, rheology)?;
-        check(speed, &profile, &options)?;
+        check_speed(speed)?;
+        options.check(profile.period())?;
         let relaxation_lengths =
             finite.branches.iter().map(|branch| speed * branch.relaxation_time).collect();
         let period = profile.period();
@@ -192,8 +225,7 @@ impl SteadyContact {
         {
             columns.push((*finer as f64 / REFINEMENT).round() as usize);
         }
-        let height = self.options.height_ratio * period;
-        let mesh = |columns| Mesh::graded(columns, period, height, self.options.grading);
+        let mesh = |columns| BlockOptions { columns, ..self.options }.mesh(period);
         columns.into_iter().rev().map(mesh).collect()
     }
 }
@@ -229,29 +261,10 @@ fn last_converged(path: &mut Path, scene: &Scene, speed: f64) -> PathEnd {
     }
 }
 
-fn check(speed: f64, profile: &RigidProfile, options: &BlockOptions) -> Result<(), FemError> {
-    let out_of_range =
-        |quantity, value, range| Err(FemError::OutOfRange { quantity, value, range });
-    let positive = |value: f64| value > 0.0 && value.is_finite();
-    if !positive(speed) {
-        return out_of_range("the speed in m/s", speed, "positive and finite");
+fn check_speed(speed: f64) -> Result<(), FemError> {
+    if speed > 0.0 && speed.is_finite() {
+        return Ok(());
     }
-    if !positive(profile.period()) {
-        return out_of_range("the period in m", profile.period(), "positive and finite");
-    }
-    if !COLUMNS_RANGE.contains(&options.columns) {
-        return out_of_range("the number of columns", options.columns as f64, "8 to 65536");
-    }
-    if !HEIGHT_RANGE.contains(&options.height_ratio) {
-        let height = options.height_ratio;
-        return out_of_range("the height of the block in periods", height, "0.1 to 10");
-    }
-    let Grading { first, growth } = options.grading;
-    if !(0.1..=10.0).contains(&first) {
-        return out_of_range("the height of the first row in columns", first, "0.1 to 10");
-    }
-    if !(1.0..=3.0).contains(&growth) {
-        return out_of_range("the growth of the rows", growth, "1 to 3");
-    }
-    Ok(())
+    let (quantity, range) = ("the speed in m/s", "positive and finite");
+    Err(FemError::OutOfRange { quantity, value: speed, range })
 }

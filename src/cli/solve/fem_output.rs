@@ -1,0 +1,123 @@
+//! What `asperity solve fem` prints and writes.
+
+use std::io::Write;
+
+use serde::Serialize;
+
+use crate::cli::output::{aligned, significant};
+use crate::fem::steady::solution::SteadySolution;
+use crate::fem::transient::{Sample, TransientSolution};
+
+/// What is printed; the names are the keys of the JSON object, those of `solve bem` first.
+#[derive(Debug, Serialize)]
+pub(super) struct Summary {
+    friction_coefficient: f64,
+    contact_area_fraction: f64,
+    mean_separation_mm: f64,
+    pressure_mpa: f64,
+    /// None for the transient route, whose time steps have one each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    residual: Option<f64>,
+    iterations: usize,
+    grid_points: usize,
+    seconds: f64,
+    rows: usize,
+    /// Friction from the heat of the branches (steady), or from the work less the stored energy.
+    hysteretic_friction: f64,
+    /// Largest less smallest friction of the averaged periods; transient route only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction_oscillation: Option<f64>,
+}
+
+impl Summary {
+    pub(super) fn steady(solution: &SteadySolution, seconds: f64) -> Self {
+        Self {
+            friction_coefficient: solution.friction_coefficient,
+            contact_area_fraction: solution.contact_area_fraction,
+            mean_separation_mm: solution.mean_separation * 1e3,
+            pressure_mpa: solution.mean_pressure / 1e6,
+            residual: Some(solution.residual),
+            iterations: solution.newton_steps,
+            grid_points: solution.elements[0],
+            seconds,
+            rows: solution.elements[1],
+            hysteretic_friction: solution.hysteretic_friction,
+            friction_oscillation: None,
+        }
+    }
+
+    pub(super) fn transient(
+        solution: &TransientSolution,
+        pressure: f64,
+        elements: [usize; 2],
+        seconds: f64,
+    ) -> Self {
+        let friction = solution.friction_coefficient;
+        let heat = solution.energy.dissipated / solution.energy.drag_work;
+        Self {
+            friction_coefficient: friction.mean,
+            contact_area_fraction: solution.contact_area_fraction.mean,
+            mean_separation_mm: solution.mean_separation.mean * 1e3,
+            pressure_mpa: pressure / 1e6,
+            residual: None,
+            iterations: solution.counts.iterations.newton,
+            grid_points: elements[0],
+            seconds,
+            rows: elements[1],
+            hysteretic_friction: friction.mean * heat,
+            friction_oscillation: Some(friction.range),
+        }
+    }
+
+    pub(super) fn table(&self) -> String {
+        let mut lines = vec![
+            ("friction coefficient", significant(self.friction_coefficient)),
+            ("from the heat", significant(self.hysteretic_friction)),
+            ("contact area fraction", significant(self.contact_area_fraction)),
+            ("mean separation", significant(self.mean_separation_mm) + " mm"),
+            ("mean pressure", significant(self.pressure_mpa) + " MPa"),
+        ];
+        if let Some(oscillation) = self.friction_oscillation {
+            lines.insert(1, ("its oscillation", significant(oscillation)));
+        }
+        if let Some(residual) = self.residual {
+            lines.push(("residual", significant(residual)));
+        }
+        lines.extend([
+            ("iterations", self.iterations.to_string()),
+            ("columns x rows", format!("{} x {}", self.grid_points, self.rows)),
+            ("time", significant(self.seconds) + " s"),
+        ]);
+        aligned(&lines)
+    }
+}
+
+pub(super) fn write_fields(out: &mut dyn Write, solution: &SteadySolution) -> std::io::Result<()> {
+    writeln!(out, "x_mm,height_mm,pressure_mpa,separation_mm")?;
+    for node in &solution.nodes {
+        let [x_mm, height_mm] = [node.x * 1e3, node.profile_height * 1e3];
+        let [pressure_mpa, separation_mm] = [node.pressure / 1e6, node.separation * 1e3];
+        writeln!(out, "{x_mm},{height_mm:e},{pressure_mpa:e},{separation_mm:e}")?;
+    }
+    Ok(())
+}
+
+pub(super) fn write_series(out: &mut dyn Write, samples: &[Sample]) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "time_s,pressure_mpa,displacement_mm,friction_coefficient,contact_area_fraction,mean_separation_mm"
+    )?;
+    for sample in samples {
+        writeln!(
+            out,
+            "{:e},{},{},{},{},{}",
+            sample.time,
+            sample.pressure / 1e6,
+            sample.displacement * 1e3,
+            sample.friction_coefficient,
+            sample.contact_area_fraction,
+            sample.mean_separation * 1e3
+        )?;
+    }
+    Ok(())
+}
