@@ -30,3 +30,6 @@ pub mod row;
 pub mod steady;
 pub mod transient;
 pub mod unknowns;
+
+#[cfg(test)]
+mod tests;

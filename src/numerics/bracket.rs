@@ -35,7 +35,7 @@ mod tests {
     fn a_root_is_found_in_few_steps() {
         let function = |x: f64| x.exp() - 3.0;
         let end = |place: f64| End { place, error: function(place) };
-        let (mut lower, mut upper) = (end(-20.0), end(5.0));
+        let (mut lower, mut upper) = (end(-1.0), end(3.0));
         let mut previous = 0.0;
         for _ in 0..16 {
             let new = end(secant(&lower, &upper));

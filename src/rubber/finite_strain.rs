@@ -190,3 +190,128 @@ impl FiniteStrainRubber {
 
 /// Nearer to incompressible the volumetric stiffness drowns the rest in round-off.
 const MAX_POISSON_RATIO: f64 = 0.4999;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const LAWS: [Rheology; 2] = [Rheology::NeoHookean, Rheology::Linear];
+
+    fn rubber(rheology: Rheology) -> FiniteStrainRubber {
+        FiniteStrainRubber::new(&Rubber::table_2_1(), rheology).unwrap()
+    }
+
+    /// A strongly deformed state and one of its past.
+    fn states() -> [(Symmetric, Symmetric); 3] {
+        [
+            ([1.3, 0.9, 0.2], IDENTITY),
+            ([0.6, 2.1, -0.4], [0.8, 1.5, 0.1]),
+            ([4.0, 0.5, 1.1], [2.5, 0.9, -0.7]),
+        ]
+    }
+
+    /// Derivative of a function of a symmetric tensor by central differences, as the tensor that
+    /// contracted with a change gives the change of the function.
+    fn derivative(function: impl Fn(&Symmetric) -> f64, at: &Symmetric) -> Symmetric {
+        [0, 1, 2].map(|i| {
+            let step = 1e-6;
+            let shifted = |by: f64| {
+                let mut c = *at;
+                c[i] += by;
+                function(&c)
+            };
+            let slope = (shifted(step) - shifted(-step)) / (2.0 * step);
+            // The shear component stands twice in a contraction.
+            if i == 2 { 0.5 * slope } else { slope }
+        })
+    }
+
+    #[test]
+    fn stress_is_the_derivative_of_the_energy() {
+        for law in LAWS {
+            let rubber = rubber(law);
+            for (c, internal) in states() {
+                let spring = rubber.branches[2];
+                let slope = derivative(|c| rubber.energy(&spring, c, &internal), &c);
+                let shear = rubber.shear_stress(&spring, &c, &internal);
+                let volumetric = rubber.volumetric_stress(&spring, &c, &internal);
+                for i in 0..3 {
+                    let stress = shear[i] + volumetric[i];
+                    // Differences of energies of 1e9 Pa.
+                    assert_relative_eq!(
+                        stress,
+                        2.0 * slope[i],
+                        max_relative = 1e-6,
+                        epsilon = 10.0
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn heat_is_what_the_energy_loses_by_flow() {
+        for law in LAWS {
+            let rubber = rubber(law);
+            for (c, internal) in states() {
+                let spring = rubber.branches[2];
+                let slope = derivative(|internal| rubber.energy(&spring, &c, internal), &internal);
+                let flow = [0, 1, 2].map(|i| (c[i] - internal[i]) / spring.relaxation_time);
+                let (shear, volumetric) = rubber.dissipation(&spring, &c, &internal);
+                let lost = -contract(&slope, &flow);
+                assert_relative_eq!(shear + volumetric, lost, max_relative = 1e-6);
+                assert!(shear > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_turned_body_has_the_turned_stress() {
+        // The law knows the deformation through C = FᵀF alone, so P = F S turns with F.
+        let f = [1.2, 0.5, -0.3, 0.9];
+        let (sine, cosine) = 0.7_f64.sin_cos();
+        let turned = [
+            cosine * f[0] - sine * f[2],
+            cosine * f[1] - sine * f[3],
+            sine * f[0] + cosine * f[2],
+            sine * f[1] + cosine * f[3],
+        ];
+        let cauchy_green = |f: [f64; 4]| {
+            [f[0] * f[0] + f[2] * f[2], f[1] * f[1] + f[3] * f[3], f[0] * f[1] + f[2] * f[3]]
+        };
+        for law in LAWS {
+            let rubber = rubber(law);
+            let stress = |f| rubber.shear_stress(&rubber.equilibrium, &cauchy_green(f), &IDENTITY);
+            for (a, b) in stress(f).into_iter().zip(stress(turned)) {
+                assert_relative_eq!(a, b, max_relative = 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn small_strains_obey_hooke() {
+        for law in LAWS {
+            let rubber = rubber(law);
+            let spring = rubber.equilibrium;
+            let strain = [2e-7, -3e-7, 1e-7];
+            let c = [0, 1, 2].map(|i| IDENTITY[i] + 2.0 * strain[i]);
+            let shear = rubber.shear_stress(&spring, &c, &IDENTITY);
+            let volumetric = rubber.volumetric_stress(&spring, &c, &IDENTITY);
+            let trace = strain[0] + strain[1];
+            for i in 0..3 {
+                let hooke =
+                    2.0 * spring.shear * strain[i] + spring.volumetric * trace * IDENTITY[i];
+                // Second order of the strain, and the round-off of 1 + strain.
+                assert_relative_eq!(shear[i] + volumetric[i], hooke, max_relative = 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn incompressible_rubber_is_refused() {
+        let incompressible = Rubber::elastic(1e6, 0.5);
+        let error = FiniteStrainRubber::new(&incompressible, Rheology::NeoHookean).unwrap_err();
+        assert!(error.to_string().contains("poisson_ratio is 0.5"), "{error}");
+    }
+}
