@@ -33,6 +33,8 @@ pub(super) enum Complementarity {
 pub(super) struct Goal {
     /// Residual to reach.
     pub residual: f64,
+    /// Residual that will do where round-off keeps it from falling any further.
+    pub acceptable: f64,
     /// Newton steps after which it is given up.
     pub most_steps: usize,
 }
@@ -133,8 +135,13 @@ impl Problem<'_> {
             };
             active = Some(now);
             let gap_error = imbalance.gap_errors.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
-            cost.residual = imbalance.norm.max(gap_error / self.heights.roughness);
-            if settled && cost.residual <= goal.residual {
+            let before = std::mem::replace(
+                &mut cost.residual,
+                imbalance.norm.max(gap_error / self.heights.roughness),
+            );
+            let stalls = step > 0 && cost.residual > 0.5 * before;
+            let enough = if stalls { goal.acceptable } else { goal.residual };
+            if settled && cost.residual <= enough {
                 return Ok(cost);
             }
             let (change, iterations) =

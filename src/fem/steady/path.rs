@@ -73,10 +73,9 @@ const MOST_SHEAR: f64 = 0.35;
 /// Shear at which it is worth while where the path is stuck.
 const LEAST_SHEAR: f64 = 0.05;
 /// On the way the path need not be met exactly.
-const ON_THE_WAY: Goal = Goal { residual: 1e-3, most_steps: 25 };
-const AT_THE_END: Goal = Goal { residual: RESIDUAL_TOLERANCE, most_steps: 30 };
-/// Residual of a solution; see [`super::solution::SteadySolution::residual`].
-const RESIDUAL_TOLERANCE: f64 = 1e-9;
+const ON_THE_WAY: Goal = Goal { residual: 1e-3, acceptable: 1e-3, most_steps: 25 };
+/// See [`super::solution::SteadySolution::residual`].
+const AT_THE_END: Goal = Goal { residual: 1e-9, acceptable: 1e-8, most_steps: 30 };
 
 impl Scene {
     fn level(&self, mesh: Mesh) -> Level {

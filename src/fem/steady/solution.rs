@@ -76,12 +76,13 @@ impl SteadySolution {
                 separation: state.gaps[j],
             })
             .collect();
-        let area = (0..2 * n)
-            .map(|k| {
-                touching_part(&nodes, k / 2, k % 2 == 1)
-                    * step(if k % 2 == 1 { k / 2 } else { (k / 2 + n - 1) % n })
+        let area: f64 = (0..n)
+            .map(|j| {
+                let before = touching_part(&state.forces, j, n - 1);
+                let after = touching_part(&state.forces, j, 1);
+                before * step((j + n - 1) % n) + after * step(j)
             })
-            .sum::<f64>();
+            .sum();
         let mean_height: f64 = (0..n)
             .map(|j| {
                 let z = |j: usize| state.displacements[2 * (j % n) + 1];
@@ -106,22 +107,39 @@ impl SteadySolution {
     }
 }
 
-/// Share in contact of the half element beside a contact node, in whole elements. Between a node
-/// in contact and one that is not lies the edge: the square of the pressure falls to zero there
-/// along a straight line, as it does at the edge of any smooth contact.
-fn touching_part(nodes: &[ContactNode], node: usize, after: bool) -> f64 {
-    let n = nodes.len();
-    let neighbour =
-        |offset: usize| &nodes[if after { node + offset } else { node + n - offset } % n];
-    let here = nodes[node].pressure;
-    if here <= 0.0 {
+/// Length in contact beside a contact node, in whole elements: a half towards another contact node,
+/// or what reaches up to the edge of the contact, which lies before the node if this is negative.
+/// `towards` is the step to the neighbour on the side in question, modulo the nodes.
+///
+/// The force of a node is the integral of the pressure with the node's shape function. Next to an
+/// edge the pressure grows like the root of the distance, so that the last two forces of a contact
+/// have the ratio `I(d) / I(d + 1)` for an edge `d` elements behind the last node, with `I` the
+/// integral of a hat with that root.
+fn touching_part(forces: &[f64], node: usize, towards: usize) -> f64 {
+    let n = forces.len();
+    if forces[node] <= 0.0 {
         return 0.0;
     }
-    if neighbour(1).pressure > 0.0 {
+    if forces[(node + towards) % n] > 0.0 {
         return 0.5;
     }
-    let inside = if after { &nodes[(node + n - 1) % n] } else { &nodes[(node + 1) % n] };
-    let (here, inside) = (here * here, inside.pressure * inside.pressure);
-    // Not further than the next node, which is open.
-    if inside > here { (here / (inside - here)).min(1.0) } else { 0.5 }
+    let inside = forces[(node + n - towards) % n];
+    let ratio = forces[node] / inside;
+    let of = |d: f64| hat_with_root(d) / hat_with_root(d + 1.0);
+    // A single node, or one with more force than the next: no edge in reach.
+    if inside <= 0.0 || ratio >= of(1.0) {
+        return 0.5;
+    }
+    let (mut low, mut high) = (-1.0, 1.0);
+    while high - low > 1e-12 {
+        let middle = 0.5 * (low + high);
+        if of(middle) < ratio { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// `∫ max(0, 1 - |x|) sqrt(max(0, d - x)) dx`: the second difference of `4/15 y^(5/2)`.
+fn hat_with_root(d: f64) -> f64 {
+    let power = |y: f64| y.max(0.0).powf(2.5);
+    4.0 / 15.0 * (power(d + 1.0) - 2.0 * power(d) + power(d - 1.0))
 }
