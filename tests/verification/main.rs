@@ -1,6 +1,7 @@
 //! The contact solver against exact solutions, published numbers and slow oracles.
 
 mod dissipation;
+mod finite_deformation;
 mod full_contact;
 mod limits;
 mod oracle;

@@ -134,11 +134,8 @@ impl Problem<'_> {
                 Complementarity::Barrier(length) => self.balanced(state, length),
             };
             active = Some(now);
-            let gap_error = imbalance.gap_errors.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
-            let before = std::mem::replace(
-                &mut cost.residual,
-                imbalance.norm.max(gap_error / self.heights.roughness),
-            );
+            let gap_error = self.largest_violation(state, &imbalance, &nodes, law);
+            let before = std::mem::replace(&mut cost.residual, imbalance.norm.max(gap_error));
             let stalls = step > 0 && cost.residual > 0.5 * before;
             let enough = if stalls { goal.acceptable } else { goal.residual };
             if settled && cost.residual <= enough {
@@ -222,6 +219,30 @@ impl Problem<'_> {
         let wanted = length * self.mean_force();
         let products = state.forces.iter().zip(&state.gaps).map(|(force, gap)| force * gap);
         products.into_iter().all(|product| (product - wanted).abs() < 0.9 * wanted)
+    }
+
+    /// Largest violation of the contact: of the gaps over the roughness, and of vanishing forces at
+    /// open nodes over the mean force. Behind the barrier only the gaps themselves can be wrong.
+    fn largest_violation(
+        &self,
+        state: &State,
+        imbalance: &Imbalance,
+        nodes: &[NodeLaw],
+        law: Complementarity,
+    ) -> f64 {
+        let contact = state.gaps.iter().zip(&imbalance.gap_errors);
+        contact
+            .zip(nodes.iter().zip(&state.forces))
+            .map(|((gap, error), (node, force))| {
+                let open = gap + error;
+                let (gap, force) = match law {
+                    Complementarity::Barrier(_) => (error.abs(), 0.0),
+                    Complementarity::ActiveSet if node.active => (open.abs(), 0.0),
+                    Complementarity::ActiveSet => ((-open).max(0.0), force.abs()),
+                };
+                (gap / self.heights.roughness).max(force / self.mean_force())
+            })
+            .fold(0.0, f64::max)
     }
 
     /// Change of the displacements by one Newton step.

@@ -1,0 +1,249 @@
+//! Finite deformation: physics.md section 4, and each route as the check of the other.
+
+use crate::surfaces::{shortest_wave, table_2_1};
+use approx::assert_relative_eq;
+use asperity::contact::SlidingContact;
+use asperity::fem::error::{FemError, PathEnd};
+use asperity::fem::profile::RigidProfile;
+use asperity::fem::steady::solution::SteadySolution;
+use asperity::fem::steady::{BlockOptions, SteadyContact};
+use asperity::fem::transient::{TransientContact, TransientOptions};
+use asperity::rubber::{MaxwellBranch, Rheology, Rubber};
+use asperity::surface::Wave;
+
+const PERIOD: f64 = 6.25e-5;
+
+fn sine(amplitude: f64) -> RigidProfile {
+    RigidProfile::from_waves(&[Wave { wavelength: PERIOD, amplitude, phase: 0.0 }], PERIOD)
+}
+
+fn contact(rubber: &Rubber, speed: f64, amplitude: f64, options: BlockOptions) -> SteadyContact {
+    SteadyContact::new(rubber, Rheology::NeoHookean, speed, sine(amplitude), options).unwrap()
+}
+
+fn assert_solved(solution: &SteadySolution) {
+    // The bound that a solution is promised to hold.
+    assert!(solution.residual <= 1e-8, "{}", solution.residual);
+    let load: f64 = solution.nodes.iter().map(|node| node.pressure).sum();
+    assert!(load > 0.0);
+    for node in &solution.nodes {
+        assert!(node.pressure >= 0.0 && node.separation >= -1e-12, "{node:?}");
+        // 1e-8 of heights of micrometres.
+        assert!(node.pressure == 0.0 || node.separation.abs() < 1e-12, "{node:?}");
+    }
+}
+
+/// At small slopes the block is the half-space: the difference vanishes with the elements and the
+/// height of the block.
+#[test]
+fn small_slopes_have_the_friction_of_the_half_space() {
+    // rms slope 0.044; thesis section 4.4.
+    let (amplitude, pressure, speed) = (6.25e-7, 5.88e4, 0.01);
+    let rubber = table_2_1();
+    let friction = |amplitude, pressure, options| {
+        let solution = contact(&rubber, speed, amplitude, options).solve(pressure).unwrap();
+        assert_solved(&solution);
+        solution.friction_coefficient
+    };
+    let half_space = |amplitude, pressure| {
+        let heights = sine(amplitude).sample(4096);
+        let mut contact = SlidingContact::new(&rubber, speed, PERIOD, &heights).unwrap();
+        contact.solve(pressure).unwrap().friction_coefficient
+    };
+    let expected = half_space(amplitude, pressure);
+    assert_relative_eq!(
+        friction(amplitude, pressure, BlockOptions::new(64)),
+        expected,
+        max_relative = 0.01
+    );
+    // A fourth of the slope, so that the error of finite slopes is below that of the mesh.
+    let (amplitude, pressure) = (0.25 * amplitude, 0.25 * pressure);
+    let expected = half_space(amplitude, pressure);
+    let errors = [32, 64, 128, 256].map(|columns| {
+        let options = BlockOptions { height_ratio: 1.5, ..BlockOptions::new(columns) };
+        (friction(amplitude, pressure, options) / expected - 1.0).abs()
+    });
+    assert!(errors.windows(2).all(|pair| pair[1] < pair[0]), "{errors:?}");
+    assert!(errors[3] < 1e-3, "{errors:?}");
+}
+
+/// On a flat profile every node carries its share, at any height of the pressure.
+#[test]
+fn a_flat_profile_presses_uniformly_without_friction() {
+    for pressure in [1e4, 1e6, 5e6] {
+        let solution =
+            contact(&table_2_1(), 0.01, 0.0, BlockOptions::new(16)).solve(pressure).unwrap();
+        assert_solved(&solution);
+        assert_relative_eq!(solution.contact_area_fraction, 1.0, max_relative = 1e-12);
+        assert!(solution.friction_coefficient.abs() < 1e-12);
+        for node in &solution.nodes {
+            assert_relative_eq!(node.pressure, pressure, max_relative = 1e-8);
+        }
+    }
+}
+
+/// In full contact, where the field has no edges, the work of the drag is the heat of the branches
+/// to the accuracy of the filter; in partial contact the difference falls with the elements.
+#[test]
+fn the_work_of_the_drag_is_the_heat_of_the_branches() {
+    let full = contact(&table_2_1(), 0.01, 3e-6, BlockOptions::new(128)).solve(2e6).unwrap();
+    assert_relative_eq!(full.contact_area_fraction, 1.0, max_relative = 1e-12);
+    assert_relative_eq!(full.friction_coefficient, full.hysteretic_friction, max_relative = 1e-6);
+    let amplitude = shortest_wave().amplitude;
+    let error = |columns| {
+        let options = BlockOptions::new(columns);
+        let solution = contact(&table_2_1(), 0.01, amplitude, options).solve(1e6).unwrap();
+        (solution.hysteretic_friction / solution.friction_coefficient - 1.0).abs()
+    };
+    let errors = [32, 64, 128].map(error);
+    assert!(errors[2] < errors[0] && errors[2] < 2e-3, "{errors:?}");
+}
+
+#[test]
+fn an_elastic_block_has_no_friction() {
+    let rubber = Rubber::elastic(4.17e6, 0.49);
+    let solution = contact(&rubber, 0.01, 6e-6, BlockOptions::new(64)).solve(5e5).unwrap();
+    assert_solved(&solution);
+    // Symmetric up to the residual.
+    assert!(solution.friction_coefficient.abs() < 1e-7, "{}", solution.friction_coefficient);
+    assert_eq!(solution.hysteretic_friction, 0.0);
+}
+
+/// Friction on both sides of its maximum by both routes. One branch, so that the drag forgets
+/// its start within a few periods.
+#[test]
+fn both_routes_have_one_friction() {
+    let (equilibrium, modulus, amplitude, pressure) = (4e6, 4e6, 5e-6, 3e5);
+    let columns = 80;
+    let friction = [0.1, 0.35, 1.2].map(|angular| {
+        let speed = 0.01;
+        let relaxation_time = angular * PERIOD / (std::f64::consts::TAU * speed);
+        let rubber = Rubber {
+            name: "one branch".into(),
+            equilibrium_modulus: equilibrium,
+            branches: vec![MaxwellBranch { modulus, relaxation_time }],
+            poisson_ratio: 0.49,
+        };
+        let options = BlockOptions::new(columns);
+        let steady = contact(&rubber, speed, amplitude, options).solve(pressure).unwrap();
+        let drag = TransientOptions {
+            drag_periods: 6,
+            averaged_periods: 1,
+            ..TransientOptions::default()
+        };
+        let transient = TransientContact::new(
+            &rubber,
+            Rheology::NeoHookean,
+            speed,
+            sine(amplitude),
+            options.mesh(PERIOD),
+            drag,
+        )
+        .unwrap()
+        .run(pressure, |_| {})
+        .unwrap();
+        let [a, b] = [steady.friction_coefficient, transient.friction_coefficient.mean];
+        assert_relative_eq!(a, b, max_relative = 5e-3);
+        a
+    });
+    assert!(friction[1] > friction[0] && friction[1] > friction[2], "{friction:?}");
+}
+
+/// Friction must not depend on how a path reached its pressure.
+#[test]
+fn a_continued_path_ends_where_a_new_one_does() {
+    let amplitude = shortest_wave().amplitude;
+    let mut continued = contact(&table_2_1(), 0.01, amplitude, BlockOptions::new(32));
+    for pressure in [2e5, 1.2e6, 5e5] {
+        let a = continued.solve(pressure).unwrap();
+        let b =
+            contact(&table_2_1(), 0.01, amplitude, BlockOptions::new(32)).solve(pressure).unwrap();
+        assert_solved(&a);
+        // The rows are shifted against a shear that is met to 0.05, which costs 1e-3 on this mesh.
+        assert_relative_eq!(a.friction_coefficient, b.friction_coefficient, max_relative = 2e-3);
+    }
+}
+
+/// One wave at 3.31 MPa: physics.md has 0.545 +- 0.001 from two other codes.
+#[test]
+fn a_strongly_sheared_block_has_the_friction_of_other_codes() {
+    let amplitude = shortest_wave().amplitude;
+    let solution =
+        contact(&table_2_1(), 0.01, amplitude, BlockOptions::new(128)).solve(3.31e6).unwrap();
+    assert_solved(&solution);
+    assert!(
+        (solution.friction_coefficient - 0.545).abs() < 2e-3,
+        "{}",
+        solution.friction_coefficient
+    );
+    assert!(solution.shear > 1.0);
+}
+
+#[test]
+fn the_pressure_of_an_area_is_found() {
+    let amplitude = shortest_wave().amplitude;
+    for fraction in [0.02, 0.1, 0.25] {
+        let mut contact = contact(&table_2_1(), 0.01, amplitude, BlockOptions::new(64));
+        let solution = contact.solve_for_area(fraction, 1e-3).unwrap();
+        assert_solved(&solution);
+        assert_relative_eq!(solution.contact_area_fraction, fraction, max_relative = 1e-3);
+    }
+}
+
+/// Whatever is asked for: a solution, or an error with the last point that was one.
+#[test]
+fn every_case_is_solved_or_says_where_the_path_ended() {
+    let mut solved = 0;
+    let mut cases = 0;
+    for amplitude in [2e-6, 1.867e-5, 3.125e-5] {
+        for speed in [1e-4, 1e-2, 1.0] {
+            for (pressure, rheology) in [
+                (5e4, Rheology::NeoHookean),
+                (1e6, Rheology::NeoHookean),
+                (2e7, Rheology::NeoHookean),
+                (2e5, Rheology::Linear),
+            ] {
+                cases += 1;
+                let options = BlockOptions::new(32);
+                let mut contact =
+                    SteadyContact::new(&table_2_1(), rheology, speed, sine(amplitude), options)
+                        .unwrap();
+                match contact.solve(pressure) {
+                    Ok(solution) => {
+                        assert_solved(&solution);
+                        assert_eq!(solution.mean_pressure, pressure);
+                        solved += 1;
+                    }
+                    Err(FemError::PathEnded { wanted, reached, .. }) => {
+                        assert_eq!(wanted, pressure);
+                        if let PathEnd::At { pressure: last, friction_coefficient, .. } = reached {
+                            assert!(last < pressure && friction_coefficient.is_finite());
+                        }
+                    }
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        }
+    }
+    assert!(solved >= cases / 2, "{solved} of {cases}");
+}
+
+#[test]
+fn bad_numbers_are_named() {
+    let rubber = table_2_1();
+    let new = |speed, options| {
+        SteadyContact::new(&rubber, Rheology::NeoHookean, speed, sine(1e-6), options)
+            .err()
+            .unwrap()
+            .to_string()
+    };
+    assert!(new(0.0, BlockOptions::new(64)).contains("the speed in m/s is 0"));
+    assert!(new(0.01, BlockOptions::new(4)).contains("the number of columns is 4"));
+    let flat = BlockOptions { height_ratio: 0.0, ..BlockOptions::new(64) };
+    assert!(new(0.01, flat).contains("the height of the block in periods is 0"));
+    let mut contact = contact(&rubber, 0.01, 1e-6, BlockOptions::new(16));
+    assert!(contact.solve(f64::NAN).unwrap_err().to_string().contains("NaN"));
+    assert!(
+        contact.solve_for_area(1.0, 0.1).unwrap_err().to_string().contains("area fraction is 1")
+    );
+}
