@@ -6,6 +6,7 @@ mod common;
 mod campaign;
 mod inspect;
 mod solve;
+mod solve_fem;
 mod synth;
 
 use std::path::{Path, PathBuf};
@@ -64,7 +65,9 @@ fn project(path: &str) -> PathBuf {
 
 #[test]
 fn help_and_version_succeed_on_standard_output() {
-    for arguments in ["--help", "--version", "solve bem --help", "synth -h", "help inspect"] {
+    for arguments in
+        ["--help", "--version", "solve bem --help", "solve fem --help", "synth -h", "help inspect"]
+    {
         assert!(asperity(arguments).result().contains("asperity"), "{arguments}");
     }
 }
