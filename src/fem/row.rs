@@ -7,7 +7,8 @@
 use super::filter::Filter;
 use super::mesh::{CENTRE, Element, POINTS};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Rheology, Symmetric, contract, determinant, inverse, sandwich,
+    FiniteStrainRubber, IDENTITY, Rheology, Spring, Symmetric, contract, dilatation, inverse,
+    sandwich,
 };
 
 /// A tensor in the plane: components xx, xz, zx, zz.
@@ -90,7 +91,8 @@ impl Row {
         forces: [&mut [f64]; 2],
     ) -> Result<(), Inverted> {
         let [below, above] = forces;
-        let mut strains = vec![IDENTITY; self.columns];
+        // C - 1 rather than C, so that small strains keep their digits.
+        let mut strains = vec![[0.0; 3]; self.columns];
         let branches = material.filters.len();
         for kind in 0..POINTS {
             let gradients = &self.element.gradients[kind];
@@ -98,13 +100,13 @@ impl Row {
             let points = &mut self.points[range];
             for (column, (point, c)) in points.iter_mut().zip(&mut strains).enumerate() {
                 let mut f = displacement_gradient(nodes, gradients, column, self.columns);
+                *c = green_strain(&f);
                 f[0] += 1.0;
                 f[3] += 1.0;
                 if f[0] * f[3] - f[1] * f[2] <= 0.0 {
                     return Err(Inverted);
                 }
                 point.deformation = f;
-                *c = right_cauchy_green(&f);
             }
             let first = kind * self.columns * branches;
             let internal = &mut self.internal[first..first + self.columns * branches];
@@ -170,10 +172,9 @@ impl Row {
         for (kind, gradients) in self.element.gradients.iter().enumerate() {
             let strains: Vec<Symmetric> = (0..self.columns)
                 .map(|column| {
-                    let mut f = displacement_gradient(nodes, gradients, column, self.columns);
-                    f[0] += 1.0;
-                    f[3] += 1.0;
-                    right_cauchy_green(&f)
+                    let h = displacement_gradient(nodes, gradients, column, self.columns);
+                    let [xx, zz, xz] = green_strain(&h);
+                    [1.0 + xx, 1.0 + zz, xz]
                 })
                 .collect();
             relax(&material.filters, &strains, &mut internal);
@@ -243,61 +244,50 @@ impl Row {
 }
 
 impl Point {
-    /// Stress and linearised law of the shear part; turns internal tensors into `G_k`.
+    /// Stress and linearised law of the shear part; turns internal strains into `G_k`.
     fn shear_law(
         &mut self,
         rubber: &FiniteStrainRubber,
-        c: &Symmetric,
+        strain: &Symmetric,
         internal: &mut [Symmetric],
     ) -> Result<(), Inverted> {
-        let neo_hookean = rubber.rheology == Rheology::NeoHookean;
         let springs = &rubber.branches;
-        self.stress = rubber.shear_stress(&rubber.equilibrium, c, &IDENTITY);
-        for (spring, c_i) in springs.iter().zip(internal.iter_mut()) {
-            let stress = rubber.shear_stress(spring, c, c_i);
+        self.stress = rubber.shear_stress_of(&rubber.equilibrium, strain, &[0.0; 3]);
+        for (spring, internal) in springs.iter().zip(internal) {
+            let stress = rubber.shear_stress_of(spring, strain, internal);
             (0..3).for_each(|i| self.stress[i] += stress[i]);
-            if neo_hookean {
-                positive(c_i)?;
-                *c_i = inverse(c_i);
-            } else {
-                *c_i = IDENTITY;
-            }
+            (*internal, _) = metric(rubber.rheology, internal)?;
         }
-        self.inverse = if neo_hookean { inverse(c) } else { IDENTITY };
+        (self.inverse, _) = metric(rubber.rheology, strain)?;
         self.modulus =
             rubber.equilibrium.shear + springs.iter().map(|spring| spring.shear).sum::<f64>();
         Ok(())
     }
 
-    /// Stress and linearised law of the volumetric part; turns internal tensors into `G_k`.
+    /// Stress and linearised law of the volumetric part; turns internal strains into `G_k`.
     fn volumetric_law(
         &mut self,
         rubber: &FiniteStrainRubber,
-        c: &Symmetric,
+        strain: &Symmetric,
         internal: &mut [Symmetric],
         relaxed: &mut [f64],
     ) -> Result<(), Inverted> {
-        let half = |volumetric: f64| 0.5 * volumetric;
-        self.stress = rubber.volumetric_stress(&rubber.equilibrium, c, &IDENTITY);
-        let neo_hookean = rubber.rheology == Rheology::NeoHookean;
-        let volume = if neo_hookean { determinant(c) } else { 1.0 };
-        self.modulus = half(rubber.equilibrium.volumetric) * volume;
-        self.pressure = half(rubber.equilibrium.volumetric) * (volume - 1.0);
-        for ((spring, c_i), relaxed) in rubber.branches.iter().zip(internal).zip(relaxed) {
-            let stress = rubber.volumetric_stress(spring, c, c_i);
+        let half = |spring: &Spring| 0.5 * spring.volumetric;
+        let equilibrium = &rubber.equilibrium;
+        let (inverse, volume) = metric(rubber.rheology, strain)?;
+        self.inverse = inverse;
+        self.stress = rubber.volumetric_stress_of(equilibrium, strain, &[0.0; 3]);
+        self.modulus = half(equilibrium) * volume;
+        self.pressure = half(equilibrium) * (volume - 1.0);
+        for ((spring, internal), relaxed) in rubber.branches.iter().zip(internal).zip(relaxed) {
+            let stress = rubber.volumetric_stress_of(spring, strain, internal);
             (0..3).for_each(|i| self.stress[i] += stress[i]);
-            let mut volume = volume;
-            if neo_hookean {
-                volume /= positive(c_i)?;
-                *c_i = inverse(c_i);
-            } else {
-                *c_i = IDENTITY;
-            }
-            *relaxed = half(spring.volumetric) * volume;
+            let (inverse, past) = metric(rubber.rheology, internal)?;
+            *internal = inverse;
+            *relaxed = half(spring) * volume / past;
             self.modulus += *relaxed;
-            self.pressure += half(spring.volumetric) * (volume - 1.0);
+            self.pressure += half(spring) * (volume / past - 1.0);
         }
-        self.inverse = if neo_hookean { inverse(c) } else { IDENTITY };
         Ok(())
     }
 
@@ -334,10 +324,18 @@ impl Point {
     }
 }
 
-/// Determinant of an internal tensor, which must be positive definite.
-fn positive(internal: &Symmetric) -> Result<f64, Inverted> {
-    let d = determinant(internal);
-    if d > 0.0 && internal[0] > 0.0 { Ok(d) } else { Err(Inverted) }
+/// `G` and the determinant of `1 + strain`, which must be positive definite; of the linear law,
+/// unit tensor and 1.
+fn metric(rheology: Rheology, strain: &Symmetric) -> Result<(Symmetric, f64), Inverted> {
+    if rheology == Rheology::Linear {
+        return Ok((IDENTITY, 1.0));
+    }
+    let volume = 1.0 + dilatation(strain);
+    if volume > 0.0 && strain[0] > -1.0 {
+        Ok((inverse(&[1.0 + strain[0], 1.0 + strain[1], strain[2]]), volume))
+    } else {
+        Err(Inverted)
+    }
 }
 
 /// Internal tensors of all branches (branches of a column together) from the strains of a row.
@@ -378,9 +376,14 @@ fn displacement_gradient(
     f
 }
 
+/// `C - 1` from the displacement gradient.
 #[inline]
-fn right_cauchy_green(f: &Tensor) -> Symmetric {
-    [f[0] * f[0] + f[2] * f[2], f[1] * f[1] + f[3] * f[3], f[0] * f[1] + f[2] * f[3]]
+fn green_strain(h: &Tensor) -> Symmetric {
+    [
+        2.0 * h[0] + h[0] * h[0] + h[2] * h[2],
+        2.0 * h[3] + h[1] * h[1] + h[3] * h[3],
+        h[1] + h[2] + h[0] * h[1] + h[2] * h[3],
+    ]
 }
 
 /// Change of the right Cauchy-Green tensor for a change of the deformation.

@@ -38,6 +38,21 @@ pub fn inverse(a: &Symmetric) -> Symmetric {
     [a[1] / d, a[0] / d, -a[2] / d]
 }
 
+/// `det(1 + a) - 1`, accurate for a small tensor.
+pub fn dilatation(a: &Symmetric) -> f64 {
+    a[0] + a[1] + determinant(a)
+}
+
+/// `det(1 + a) - det(1 + b)`, accurate for small tensors.
+pub fn dilatation_difference(a: &Symmetric, b: &Symmetric) -> f64 {
+    (a[0] - b[0]) + (a[1] - b[1]) + (determinant(a) - determinant(b))
+}
+
+/// `C - 1`.
+fn strain_of(c: &Symmetric) -> Symmetric {
+    [c[0] - 1.0, c[1] - 1.0, c[2]]
+}
+
 /// Double contraction `a : b`.
 pub fn contract(a: &Symmetric, b: &Symmetric) -> f64 {
     a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2]
@@ -136,11 +151,7 @@ impl FiniteStrainRubber {
 
     /// Shear part of the stress of one spring in Pa.
     pub fn shear_stress(&self, spring: &Spring, c: &Symmetric, internal: &Symmetric) -> Symmetric {
-        let (from, to) = match self.rheology {
-            Rheology::NeoHookean => (inverse(c), inverse(internal)),
-            Rheology::Linear => (*internal, *c),
-        };
-        [0, 1, 2].map(|i| spring.shear * (to[i] - from[i]))
+        self.shear_stress_of(spring, &strain_of(c), &strain_of(internal))
     }
 
     /// Volumetric part of the stress of one spring in Pa.
@@ -150,14 +161,50 @@ impl FiniteStrainRubber {
         c: &Symmetric,
         internal: &Symmetric,
     ) -> Symmetric {
+        self.volumetric_stress_of(spring, &strain_of(c), &strain_of(internal))
+    }
+
+    /// [`Self::shear_stress`] from the strains `C - 1` and `C_i - 1`: nothing is lost to
+    /// cancellation however small they are.
+    pub fn shear_stress_of(
+        &self,
+        spring: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+    ) -> Symmetric {
+        match self.rheology {
+            Rheology::NeoHookean => {
+                // C_i⁻¹ - C⁻¹ = adj C_i (det C - det C_i) / (det C det C_i)
+                //               + (adj C_i - adj C) / det C
+                let (volume, past) = (1.0 + dilatation(strain), 1.0 + dilatation(internal));
+                let change = dilatation_difference(strain, internal) / (volume * past);
+                let adjugate = [1.0 + internal[1], 1.0 + internal[0], -internal[2]];
+                let less =
+                    [internal[1] - strain[1], internal[0] - strain[0], strain[2] - internal[2]];
+                [0, 1, 2].map(|i| spring.shear * (adjugate[i] * change + less[i] / volume))
+            }
+            Rheology::Linear => [0, 1, 2].map(|i| spring.shear * (strain[i] - internal[i])),
+        }
+    }
+
+    /// [`Self::volumetric_stress`] from the strains `C - 1` and `C_i - 1`.
+    pub fn volumetric_stress_of(
+        &self,
+        spring: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+    ) -> Symmetric {
         let half = 0.5 * spring.volumetric;
         match self.rheology {
             Rheology::NeoHookean => {
-                let pressure = half * (determinant(c) / determinant(internal) - 1.0);
-                inverse(c).map(|g| pressure * g)
+                let past = 1.0 + dilatation(internal);
+                let pressure = half * dilatation_difference(strain, internal) / past;
+                let volume = 1.0 + dilatation(strain);
+                let adjugate = [1.0 + strain[1], 1.0 + strain[0], -strain[2]];
+                adjugate.map(|g| pressure * g / volume)
             }
             Rheology::Linear => {
-                let trace = (c[0] - internal[0]) + (c[1] - internal[1]);
+                let trace = (strain[0] - internal[0]) + (strain[1] - internal[1]);
                 IDENTITY.map(|unit| half * trace * unit)
             }
         }
@@ -305,6 +352,19 @@ mod tests {
                 // Second order of the strain, and the round-off of 1 + strain.
                 assert_relative_eq!(shear[i] + volumetric[i], hooke, max_relative = 1e-4);
             }
+        }
+    }
+
+    #[test]
+    fn tiny_strains_keep_their_digits() {
+        let rubber = rubber(Rheology::NeoHookean);
+        let spring = rubber.branches[4];
+        let tiny = [2e-14, -3e-14, 1e-14];
+        let stress = rubber.volumetric_stress_of(&spring, &tiny, &[0.0; 3]);
+        assert_relative_eq!(stress[0], -0.5 * spring.volumetric * 1e-14, max_relative = 1e-12);
+        let stress = rubber.shear_stress_of(&spring, &tiny, &[0.0; 3]);
+        for i in 0..3 {
+            assert_relative_eq!(stress[i], spring.shear * tiny[i], max_relative = 1e-12);
         }
     }
 

@@ -9,7 +9,7 @@ use super::fem_output::{Summary, write_fields, write_series};
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
-use crate::cli::output::{json, note, print, write_file};
+use crate::cli::output::{json, note, print, significant, write_file};
 use crate::cli::{CliError, values};
 use crate::contact::SlidingContact;
 use crate::fem::profile::RigidProfile;
@@ -22,6 +22,9 @@ const AREA_TOLERANCE: f64 = 1e-4;
 /// Columns on the shortest wave without --columns: friction is then within about half a percent
 /// of the limit for usual areas.
 const DEFAULT_COLUMNS_PER_WAVE: f64 = 64.0;
+
+/// Relative difference of heat and work from which the user is warned; converged meshes have 1e-3.
+const COARSE: f64 = 0.05;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -138,7 +141,7 @@ impl Fem {
         }
         let profile = rigid_profile(&shape);
         let summary = match self.route {
-            Route::Steady => self.steady(&rubber, profile)?,
+            Route::Steady => self.steady(&rubber, profile, quiet)?,
             Route::Transient => self.transient(&rubber, profile, &shape)?,
         };
         print(&if self.json { json(&summary)? } else { summary.table() })
@@ -180,7 +183,12 @@ impl Fem {
         })
     }
 
-    fn steady(&self, rubber: &Rubber, profile: RigidProfile) -> Result<Summary, CliError> {
+    fn steady(
+        &self,
+        rubber: &Rubber,
+        profile: RigidProfile,
+        quiet: bool,
+    ) -> Result<Summary, CliError> {
         let options =
             BlockOptions { height_ratio: self.height, ..BlockOptions::new(self.columns(&profile)) };
         let start = Instant::now();
@@ -191,6 +199,17 @@ impl Fem {
             (None, Some(fraction)) => contact.solve_for_area(fraction, AREA_TOLERANCE)?,
             (None, None) => return Err(CliError::input("give --pressure or --area")),
         };
+        let imbalance = solution.hysteretic_friction / solution.friction_coefficient - 1.0;
+        if imbalance.abs() > COARSE && solution.hysteretic_friction != 0.0 {
+            note(
+                quiet,
+                format_args!(
+                    "warning: the heat of the branches differs from the work of the drag by {} %, \
+                     the mesh is too coarse for reliable figures: give more --columns",
+                    significant(100.0 * imbalance)
+                ),
+            );
+        }
         if let Some(path) = &self.fields {
             write_file(path, true, |out| write_fields(out, &solution))?;
         }
