@@ -14,14 +14,14 @@
 //! where `F = F_0`. The contact enters `(F + B)⁻¹` through the displacements of the contact nodes
 //! alone, a dense system of two unknowns for each node that is in contact or nearly so.
 
+mod contact;
+mod homogeneous;
+
+pub use contact::MemoryContact;
+
 use super::block::Block;
-use super::local::NodeStiffness;
-use super::mesh::{CENTRE, Element};
 use super::unknowns::Unknowns;
-use crate::rubber::Rheology;
-use crate::rubber::finite_strain::{IDENTITY, Symmetric, inverse};
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Mat, MatMut};
+use homogeneous::{MeanState, RowStiffness};
 use nalgebra::{Matrix2, Vector2};
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
@@ -30,10 +30,6 @@ use std::sync::Arc;
 
 type Block2 = Matrix2<Complex64>;
 type Pair2 = Vector2<Complex64>;
-
-/// Forces on the lower and the upper row of nodes by displacements of both.
-#[derive(Clone, Copy)]
-struct RowStiffness([[Block2; 2]; 2]);
 
 /// The homogeneous block at all wavenumbers, with its memory, and factorised.
 pub struct Memory {
@@ -53,22 +49,6 @@ pub struct Memory {
     compliance: Vec<[[f64; 2]; 2]>,
     /// Forces by the displacement of the upper edge on the row below it, and on itself.
     edge: [Pair2; 2],
-}
-
-/// The contact at one Newton step.
-pub struct MemoryContact<'a> {
-    memory: &'a Memory,
-    /// The contact nodes that are stiff, and their stiffness.
-    nodes: Vec<usize>,
-    stiffness: Vec<NodeStiffness>,
-    system: PartialPivLu<f64>,
-    edge_response: Vec<Pair2>,
-}
-
-/// The mean state of a row of elements.
-struct MeanState {
-    deformation: [f64; 4],
-    inverse: Symmetric,
 }
 
 impl Memory {
@@ -262,161 +242,8 @@ impl Memory {
         }
         forces
     }
-
-    /// Adds the contact of one Newton step: the stiffness of each contact node.
-    pub fn with_contact(&self, contact: &[NodeStiffness]) -> MemoryContact<'_> {
-        let n = self.unknowns.columns;
-        let mut nodes: Vec<usize> =
-            (0..n).filter(|j| contact[*j][1][1] > FELT * self.modulus).collect();
-        if nodes.len() > MOST_NODES {
-            nodes.sort_by(|a, b| contact[*b][1][1].total_cmp(&contact[*a][1][1]));
-            nodes.truncate(MOST_NODES);
-        }
-        let entry = |i: usize, j: usize| {
-            let s = &self.compliance[(nodes[i / 2] + n - nodes[j / 2]) % n][i % 2];
-            let k = &contact[nodes[j / 2]];
-            let product = s[0] * k[0][j % 2] + s[1] * k[1][j % 2];
-            if i == j { product + 1.0 } else { product }
-        };
-        let size = 2 * nodes.len();
-        let system = Mat::from_fn(size, size, entry).partial_piv_lu();
-        let stiffness = nodes.iter().map(|j| contact[*j]).collect();
-        let mut contact =
-            MemoryContact { memory: self, nodes, stiffness, system, edge_response: Vec::new() };
-        let mut edge = vec![Pair2::zeros(); self.waves * (self.unknowns.rows + 1)];
-        let top = self.unknowns.rows * self.waves;
-        edge[top - self.waves] = -self.edge[0] * Complex64::from(n as f64);
-        edge[top] = -self.edge[1] * Complex64::from(n as f64);
-        edge[top][0] = Complex64::ZERO;
-        contact.solve_own(&mut edge);
-        edge[top][0] = Complex64::from(n as f64);
-        contact.edge_response = edge;
-        contact
-    }
 }
 
-/// Stiffness of a contact node, over that of the surface, from which the correction heeds it.
-const FELT: f64 = 1e-3;
-/// More nodes would make the dense system cost more than it saves; the stiffest are kept.
-const MOST_NODES: usize = 1024;
 /// Stiffness on all contact nodes that keeps the block from floating away, over that of the
 /// surface.
 const AFLOAT: f64 = 1e-4;
-
-impl MemoryContact<'_> {
-    fn solve_own(&self, field: &mut [Pair2]) {
-        let memory = self.memory;
-        let n = memory.unknowns.columns;
-        memory.solve(field);
-        let mut surface = vec![0.0; 2 * n];
-        memory.to_nodes(&field[..memory.waves], &mut surface);
-        let mut touching: Vec<f64> =
-            self.nodes.iter().flat_map(|j| [surface[2 * j], surface[2 * j + 1]]).collect();
-        let size = touching.len();
-        self.system.solve_in_place(MatMut::from_column_major_slice_mut(&mut touching, size, 1));
-        surface.fill(0.0);
-        for ((node, k), j) in touching.chunks_exact(2).zip(&self.stiffness).zip(&self.nodes) {
-            surface[2 * j] = k[0][0] * node[0] + k[0][1] * node[1];
-            surface[2 * j + 1] = k[1][0] * node[0] + k[1][1] * node[1];
-        }
-        let mut correction = vec![Pair2::zeros(); field.len()];
-        memory.to_waves(&surface, &mut correction[..memory.waves]);
-        memory.solve(&mut correction);
-        for (wave, correction) in field.iter_mut().zip(&correction) {
-            *wave -= correction;
-        }
-    }
-
-    /// Adds `(F_0 - F) (F + B)⁻¹` of reduced forces to them.
-    pub fn correct(&self, reduced: &mut [f64]) {
-        let memory = self.memory;
-        let (unknowns, waves) = (memory.unknowns, memory.waves);
-        let own = unknowns.own();
-        let mut nodes = unknowns.expand(reduced);
-        let top = unknowns.upper_edge();
-        nodes[top..].iter_mut().step_by(2).for_each(|x| *x = 0.0);
-        let row_len = 2 * unknowns.columns;
-        let mut field = vec![Pair2::zeros(); waves * (unknowns.rows + 1)];
-        for (nodes, waves) in nodes.chunks_exact(row_len).zip(field.chunks_exact_mut(waves)) {
-            memory.to_waves(nodes, waves);
-        }
-        self.solve_own(&mut field);
-        let missing = Complex64::from(reduced[own] * unknowns.columns as f64) - field[0][0];
-        let common = missing / self.edge_response[0][0];
-        for (wave, response) in field.iter_mut().zip(&self.edge_response) {
-            *wave += response * common;
-        }
-        let forces = memory.local_less_full(&field);
-        for (nodes, waves) in nodes.chunks_exact_mut(row_len).zip(forces.chunks_exact(waves)) {
-            memory.to_nodes(waves, nodes);
-        }
-        for (reduced, force) in reduced.iter_mut().zip(unknowns.reduce(&nodes, 0.0)) {
-            *reduced += force;
-        }
-    }
-}
-
-impl MeanState {
-    /// The state with a vertical slope of the mean displacements, at rest.
-    fn new(block: &Block, shear: f64) -> Self {
-        let rubber = &block.material().rubber;
-        // At constant volume and without stress: row means of a contact that is strongly deformed
-        // would have a pressure that is nowhere in the row.
-        let deformation = [1.0, shear, 0.0, 1.0];
-        let c = [1.0, 1.0 + shear * shear, shear];
-        let inverse = match rubber.rheology {
-            Rheology::NeoHookean => inverse(&c),
-            Rheology::Linear => IDENTITY,
-        };
-        Self { deformation, inverse }
-    }
-
-    /// Stiffness of a row at one wavenumber with complex moduli μ and c.
-    fn stiffness(&self, element: &Element, angle: f64, moduli: [Complex64; 2]) -> RowStiffness {
-        let phase = Complex64::cis(angle);
-        let mut stiffness = RowStiffness([[Block2::zeros(); 2]; 2]);
-        let f = &self.deformation;
-        for (kind, gradients) in element.gradients.iter().enumerate() {
-            let weight = element.weights[kind];
-            let gradient = [0, 2]
-                .map(|node| [0, 1].map(|c| gradients[node][c] + gradients[node + 1][c] * phase));
-            for (from, by) in gradient.iter().enumerate() {
-                for direction in 0..2 {
-                    // δF = e_direction ⊗ gradient.
-                    let row = [f[2 * direction], f[2 * direction + 1]];
-                    let strain = [
-                        2.0 * row[0] * by[0],
-                        2.0 * row[1] * by[1],
-                        row[0] * by[1] + row[1] * by[0],
-                    ];
-                    let stress = if kind == CENTRE {
-                        let trace = self.inverse[0] * strain[0]
-                            + self.inverse[1] * strain[1]
-                            + 2.0 * self.inverse[2] * strain[2];
-                        self.inverse.map(|g| moduli[1] * trace * g)
-                    } else {
-                        sandwich(&self.inverse, &strain).map(|s| moduli[0] * s)
-                    };
-                    for i in 0..2 {
-                        let traction = [
-                            f[2 * i] * stress[0] + f[2 * i + 1] * stress[2],
-                            f[2 * i] * stress[2] + f[2 * i + 1] * stress[1],
-                        ];
-                        for (to, test) in gradient.iter().enumerate() {
-                            stiffness.0[to][from][(i, direction)] += weight
-                                * (traction[0] * test[0].conj() + traction[1] * test[1].conj());
-                        }
-                    }
-                }
-            }
-        }
-        stiffness
-    }
-}
-
-/// The product `G X G` with a complex strain.
-fn sandwich(g: &Symmetric, x: &[Complex64; 3]) -> [Complex64; 3] {
-    let (xx, xz) = (x[0] * g[0] + x[2] * g[2], x[2] * g[0] + x[1] * g[2]);
-    let (zx, zz) = (x[0] * g[2] + x[2] * g[1], x[2] * g[2] + x[1] * g[1]);
-    [xx * g[0] + xz * g[2], zx * g[2] + zz * g[1], xx * g[2] + xz * g[1]]
-}
