@@ -25,6 +25,7 @@ pub mod filter;
 pub mod local;
 pub mod memory;
 pub mod mesh;
+mod point;
 pub mod profile;
 pub mod row;
 pub mod steady;
