@@ -57,12 +57,12 @@ impl Study {
         text
     }
 
-    /// For each model, quantity and level: the rms slope up to which no point parts.
+    /// For each model, quantity and level: the rms slope up to which points agree and none parts.
     fn conclusions(&self, text: &mut String) {
         text.push_str(
             "## Agreement with the neo-Hookean model\n\n\
-             | model | quantity | level | no speed parts up to rms slope | parts from | speeds compared | undecided |\n\
-             |---|---|---:|---:|---:|---:|---:|\n",
+             | model | quantity | level | agrees up to rms slope | parts from | points agree | part | undecided | compared |\n\
+             |---|---|---:|---:|---:|---:|---:|---:|---:|\n",
         );
         let mut rows: Vec<&AgreementRow> = self.agreement.iter().collect();
         let order = |a: &AgreementRow, b: &AgreementRow| {
@@ -73,7 +73,7 @@ impl Study {
         for group in rows.chunk_by(|a, b| order(a, b).is_eq()) {
             let held = group.iter().take_while(|row| row.part == 0).count();
             let slope = |row: Option<&&AgreementRow>| {
-                row.map_or("none".into(), |row| format!("{:.2}", row.rms_slope))
+                row.map_or("-".into(), |row| format!("{:.2}", row.rms_slope))
             };
             let sum = |value: fn(&AgreementRow) -> u32| -> u32 {
                 group.iter().map(|row| value(row)).sum()
@@ -81,15 +81,17 @@ impl Study {
             let first = group[0];
             let _ = writeln!(
                 text,
-                "| {} | {} | {} % | {} | {} | {} of {} | {} |",
+                "| {} | {} | {} % | {} | {} | {} | {} | {} | {} of {} |",
                 first.model,
                 first.quantity,
                 100.0 * first.level,
-                slope(held.checked_sub(1).and_then(|last| group.get(last))),
+                slope(group[..held].iter().rfind(|row| row.agree > 0)),
                 slope(group.get(held)),
+                sum(|row| row.agree),
+                sum(|row| row.part),
+                sum(|row| row.undecided),
                 sum(|row| row.compared),
                 sum(|row| row.compared + row.missing),
-                sum(|row| row.undecided),
             );
         }
         text.push('\n');

@@ -109,8 +109,8 @@ impl std::fmt::Display for Problem {
 }
 
 impl Problem {
-    /// The outcome of each pressure, from the store if it is there. Where a path has ended, higher
-    /// pressures are not tried.
+    /// The outcome of each pressure, from the store if it is there. Where the path from the pressure
+    /// before ends, one from the first contact is tried.
     pub fn outcomes(
         &self,
         rubber: &Rubber,
@@ -120,14 +120,11 @@ impl Problem {
         if let Some(outcomes) = store.get::<Vec<Outcome>>(&key)? {
             return Ok(outcomes);
         }
-        let mut outcomes = match self.model {
+        let outcomes = match self.model {
             Model::HalfSpace => self.half_space(rubber)?,
             Model::Linear => self.finite_deformation(rubber, Rheology::Linear)?,
             Model::NeoHookean => self.finite_deformation(rubber, Rheology::NeoHookean)?,
         };
-        if let Some(last) = outcomes.last().cloned() {
-            outcomes.resize(self.pressures_mpa.len(), last);
-        }
         store.put(&key, &outcomes)?;
         Ok(outcomes)
     }
@@ -189,22 +186,31 @@ impl Problem {
         rheology: Rheology,
     ) -> Result<Vec<Outcome>, SolveError> {
         let wave = self.wave();
-        let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
-        let options = BlockOptions::new(self.columns);
         let speed = self.speed_mm_s / 1e3;
-        let mut contact = SteadyContact::new(rubber, rheology, speed, profile, options)?;
-        let mut outcomes = Vec::with_capacity(self.pressures_mpa.len());
-        for pressure in &self.pressures_mpa {
-            match contact.solve(pressure * 1e6) {
-                Ok(solution) => outcomes.push(Outcome::Solved(self.read_block(&solution))),
-                Err(error @ FemError::PathEnded { .. }) => {
-                    outcomes.push(no_solution(&error));
-                    break;
-                }
-                Err(error) => return Err(error.into()),
+        let set_up = || {
+            let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
+            SteadyContact::new(rubber, rheology, speed, profile, BlockOptions::new(self.columns))
+        };
+        // The contact at the pressure before, if it has a solution.
+        let mut last: Option<SteadyContact> = None;
+        let solve = |pressure: &f64| {
+            if let Some(mut contact) = last.take()
+                && let Ok(solution) = contact.solve(pressure * 1e6)
+            {
+                last = Some(contact);
+                return Ok(Outcome::Solved(self.read_block(&solution)));
             }
-        }
-        Ok(outcomes)
+            let mut contact = set_up()?;
+            match contact.solve(pressure * 1e6) {
+                Ok(solution) => {
+                    last = Some(contact);
+                    Ok(Outcome::Solved(self.read_block(&solution)))
+                }
+                Err(error @ FemError::PathEnded { .. }) => Ok(no_solution(&error)),
+                Err(error) => Err(error.into()),
+            }
+        };
+        self.pressures_mpa.iter().map(solve).collect()
     }
 
     fn read_block(&self, solution: &SteadySolution) -> Solved {
