@@ -1,12 +1,14 @@
 //! The one function that wires the stages, and the comparison of what is there with what the
 //! recipe asks for.
 
-use crate::artifact::{ArtifactError, Identity, Input, Manifest, RunFolder, RunView, SolveStore};
-use crate::recipe::Recipe;
+use crate::artifact::{
+    ArtifactError, Identity, Input, Manifest, RunFolder, RunView, SchemaVersion, SolveStore,
+};
+use crate::recipe::{Chain, Recipe, Violation, Work};
 use crate::rubber::Rubber;
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Context, Stage, StageError, approximate, bem, characterise, ingest, realise, tables,
+    Context, Stage, StageError, approximate, bem, characterise, ingest, realise, sinusoid, tables,
 };
 use serde_json::{Value, json};
 use std::path::Path;
@@ -69,6 +71,17 @@ pub enum PipelineError {
         /// Why.
         source: Box<StageError>,
     },
+    /// Sections of the recipe that do not go together.
+    #[error(transparent)]
+    Recipe(#[from] Violation),
+    /// A selected stage that the recipe does not have.
+    #[error("the recipe has no stage {selected}: it has {}", .stages.join(", "))]
+    NoSuchStage {
+        /// The stage that was asked for.
+        selected: Stage,
+        /// Those of the recipe.
+        stages: Vec<&'static str>,
+    },
     /// The run folder.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
@@ -111,8 +124,9 @@ pub fn run(
 ) -> Result<(), PipelineError> {
     // First what can be wrong without leaving a folder behind.
     let plan = Plan::new(recipe)?;
+    plan.check(selection)?;
     let folder = RunFolder::open(out)?;
-    for stage in plan.stages() {
+    for &stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
         let identity = plan.identity(stage, &folder)?;
         let state = state(stage, &identity, &folder)?;
@@ -154,7 +168,7 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
     let view = RunView::of(out);
     let plan = Plan::new(recipe)?;
     let mut states: Vec<(Stage, State)> = Vec::new();
-    for stage in plan.stages() {
+    for &stage in plan.stages() {
         let before = states.iter().find(|(_, state)| *state != State::Fresh);
         let state = match before {
             // What a stage would read is not known before those it reads from are up to date.
@@ -170,9 +184,9 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
     Ok(states)
 }
 
-/// The recipe with what it refers to.
+/// What the recipe asks for with what it refers to.
 struct Plan<'a> {
-    recipe: &'a Recipe,
+    work: Work<'a>,
     scans: Vec<ScanFile>,
     rubber: Rubber,
     published: Vec<Input>,
@@ -181,31 +195,68 @@ struct Plan<'a> {
 impl<'a> Plan<'a> {
     fn new(recipe: &'a Recipe) -> Result<Self, PipelineError> {
         let of = |stage| move |source| PipelineError::Stage { stage, source: Box::new(source) };
-        let scans = match &recipe.ingest {
-            Some(ingest) => ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?,
-            None => Vec::new(),
+        let work = recipe.work()?;
+        let (mut scans, mut published) = (Vec::new(), Vec::new());
+        let rubber = match work {
+            Work::Chain(chain) => {
+                if let Some(ingest) = chain.ingest {
+                    scans = ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?;
+                }
+                published = tables::inputs(chain.tables).map_err(of(Stage::Tables))?;
+                bem::rubber(chain.bem).map_err(of(Stage::Bem))?
+            }
+            Work::Sinusoid(study) => sinusoid::rubber(study).map_err(of(Stage::Sinusoid))?,
         };
-        let rubber = bem::rubber(&recipe.bem).map_err(of(Stage::Bem))?;
-        let published = tables::inputs(&recipe.tables).map_err(of(Stage::Tables))?;
-        Ok(Self { recipe, scans, rubber, published })
+        Ok(Self { work, scans, rubber, published })
     }
 
-    /// The stages of the recipe; one that states its waves needs no scans.
-    fn stages(&self) -> impl Iterator<Item = Stage> {
-        let first = if self.recipe.ingest.is_some() { Stage::Ingest } else { Stage::Approximate };
-        Stage::ALL.into_iter().filter(move |stage| *stage >= first)
+    /// The stages of the recipe; a chain that states its waves needs no scans.
+    fn stages(&self) -> &'static [Stage] {
+        match self.work {
+            Work::Chain(Chain { ingest: Some(_), .. }) => &Stage::CHAIN,
+            Work::Chain(_) => &Stage::CHAIN[2..],
+            Work::Sinusoid(_) => &[Stage::Sinusoid],
+        }
+    }
+
+    /// Fails for a selected stage that the recipe does not have.
+    fn check(&self, selection: Selection) -> Result<(), PipelineError> {
+        let selected = [selection.only, selection.from, selection.force].into_iter().flatten();
+        for selected in selected {
+            if !self.stages().contains(&selected) {
+                let stages = self.stages().iter().map(|stage| stage.name()).collect();
+                return Err(PipelineError::NoSuchStage { selected, stages });
+            }
+        }
+        Ok(())
     }
 
     /// All that determines the result of a stage, given the results before it.
     fn identity(&self, stage: Stage, view: &RunView) -> Result<Identity, ArtifactError> {
-        let recipe = self.recipe;
+        let (stage_revision, output_schemas, parameters, inputs) = match self.work {
+            Work::Chain(chain) => self.chain_identity(chain, stage, view)?,
+            Work::Sinusoid(study) => {
+                let parameters = study.resolved(&self.rubber);
+                (sinusoid::REVISION, sinusoid::schemas(), parameters, Vec::new())
+            }
+        };
+        let stage = stage.name().to_owned();
+        Ok(Identity { stage, stage_revision, output_schemas, parameters, inputs })
+    }
+
+    fn chain_identity(
+        &self,
+        chain: Chain,
+        stage: Stage,
+        view: &RunView,
+    ) -> Result<(u32, Vec<SchemaVersion>, Value, Vec<Input>), ArtifactError> {
         let from = |stage: Stage, file: &str| -> Result<Vec<Input>, ArtifactError> {
             let manifest = view.stage_manifest(stage.name())?;
             Ok(manifest.and_then(|manifest| manifest.input(file)).into_iter().collect())
         };
-        let (stage_revision, output_schemas, parameters, inputs) = match stage {
+        Ok(match stage {
             Stage::Ingest => {
-                let mut parameters = json!(recipe.ingest);
+                let mut parameters = json!(chain.ingest);
                 // Where the scans are is no parameter: their names and digests are inputs.
                 if let Value::Object(keys) = &mut parameters {
                     keys.remove("scans");
@@ -215,37 +266,36 @@ impl<'a> Plan<'a> {
             Stage::Characterise => (
                 characterise::REVISION,
                 characterise::schemas(),
-                json!(recipe.characterise),
+                json!(chain.characterise),
                 from(Stage::Ingest, ingest::SCANS_FILE)?,
             ),
             Stage::Approximate => {
-                let inputs = match recipe.ingest {
+                let inputs = match chain.ingest {
                     Some(_) => from(Stage::Characterise, characterise::CORRELATION_FILE)?,
                     None => Vec::new(),
                 };
-                let parameters = json!(recipe.approximate);
+                let parameters = json!(chain.approximate);
                 (approximate::REVISION, approximate::schemas(), parameters, inputs)
             }
             Stage::Realise => (
                 realise::REVISION,
                 realise::schemas(),
-                json!(recipe.realise),
+                json!(chain.realise),
                 from(Stage::Approximate, approximate::WAVES_FILE)?,
             ),
             Stage::Bem => (
                 bem::REVISION,
                 bem::schemas(),
-                recipe.bem.resolved(&self.rubber),
+                chain.bem.resolved(&self.rubber),
                 from(Stage::Realise, realise::SURFACES_FILE)?,
             ),
             Stage::Tables => {
                 let mut inputs = from(Stage::Bem, bem::CURVES_FILE)?;
                 inputs.extend(self.published.iter().cloned());
-                (tables::REVISION, tables::schemas(), json!(recipe.tables), inputs)
+                (tables::REVISION, tables::schemas(), json!(chain.tables), inputs)
             }
-        };
-        let stage = stage.name().to_owned();
-        Ok(Identity { stage, stage_revision, output_schemas, parameters, inputs })
+            Stage::Sinusoid => unreachable!("no stage of the chain"),
+        })
     }
 }
 
@@ -256,26 +306,37 @@ fn compute(
     selection: Selection,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let recipe = plan.recipe;
+    let forced = selection.force == Some(stage);
+    let chain = match plan.work {
+        Work::Chain(chain) => chain,
+        Work::Sinusoid(study) => {
+            return sinusoid::run(study, &plan.rubber, &solve_store(folder, forced)?, context);
+        }
+    };
     match stage {
-        Stage::Ingest => match &recipe.ingest {
+        Stage::Ingest => match chain.ingest {
             Some(ingest) => ingest::run(ingest, &plan.scans, context),
             None => Ok(Vec::new()),
         },
-        Stage::Characterise => characterise::run(&recipe.characterise, folder, context),
-        Stage::Approximate => approximate::run(&recipe.approximate, folder, context),
-        Stage::Realise => realise::run(&recipe.realise, folder, context),
+        Stage::Characterise => characterise::run(chain.characterise, folder, context),
+        Stage::Approximate => approximate::run(chain.approximate, folder, context),
+        Stage::Realise => realise::run(chain.realise, folder, context),
         Stage::Bem => {
-            let path = folder.path().join(SOLVES_FOLDER);
-            if selection.force == Some(Stage::Bem) && path.exists() {
-                std::fs::remove_dir_all(&path)
-                    .map_err(|source| StageError::RemoveSolves { path: path.clone(), source })?;
-            }
-            let store = SolveStore::open(path)?;
-            bem::run(&recipe.bem, &plan.rubber, folder, &store, context)
+            bem::run(chain.bem, &plan.rubber, folder, &solve_store(folder, forced)?, context)
         }
-        Stage::Tables => tables::run(&recipe.tables, folder, context),
+        Stage::Tables => tables::run(chain.tables, folder, context),
+        Stage::Sinusoid => unreachable!("no stage of the chain"),
     }
+}
+
+/// The store of single solves, emptied for a stage that is to be computed afresh.
+fn solve_store(folder: &RunFolder, forced: bool) -> Result<SolveStore, StageError> {
+    let path = folder.path().join(SOLVES_FOLDER);
+    if forced && path.exists() {
+        std::fs::remove_dir_all(&path)
+            .map_err(|source| StageError::RemoveSolves { path: path.clone(), source })?;
+    }
+    Ok(SolveStore::open(path)?)
 }
 
 /// Compares the result that is there with what is asked for.

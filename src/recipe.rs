@@ -3,7 +3,7 @@
 use crate::scans::ScanProblem;
 use crate::stages::{
     approximate::Approximate, bem::Bem, characterise::Characterise, ingest::Ingest,
-    realise::Realise, tables::Tables,
+    realise::Realise, sinusoid::Sinusoid, tables::Tables,
 };
 use crate::surface::ConditioningError;
 use schemars::JsonSchema;
@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// A recipe. Paths in it are relative to the folder of its file; unknown keys are refused.
+///
+/// Either the sections from scans to tables, or `[sinusoid]` alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
@@ -24,14 +26,46 @@ pub struct Recipe {
     #[serde(default)]
     pub characterise: Characterise,
     /// Superposed sines in place of the scans.
-    pub approximate: Approximate,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approximate: Option<Approximate>,
     /// Random-phase realisations.
-    pub realise: Realise,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub realise: Option<Realise>,
     /// Sliding contact of the viscoelastic half-space.
-    pub bem: Bem,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bem: Option<Bem>,
     /// Averaged friction tables.
     #[serde(default)]
     pub tables: Tables,
+    /// The study of one sine wave under three models, in place of all other sections.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sinusoid: Option<Sinusoid>,
+}
+
+/// What a recipe asks for.
+#[derive(Debug, Clone, Copy)]
+pub enum Work<'a> {
+    /// From scans, or waves that it states, to friction tables.
+    Chain(Chain<'a>),
+    /// The study of one sine wave.
+    Sinusoid(&'a Sinusoid),
+}
+
+/// The sections of the chain from scans to tables.
+#[derive(Debug, Clone, Copy)]
+pub struct Chain<'a> {
+    /// Section `[ingest]`, if the recipe does not state its waves itself.
+    pub ingest: Option<&'a Ingest>,
+    /// Section `[characterise]`.
+    pub characterise: &'a Characterise,
+    /// Section `[approximate]`.
+    pub approximate: &'a Approximate,
+    /// Section `[realise]`.
+    pub realise: &'a Realise,
+    /// Section `[bem]`.
+    pub bem: &'a Bem,
+    /// Section `[tables]`.
+    pub tables: &'a Tables,
 }
 
 /// Why a recipe cannot be used.
@@ -75,6 +109,20 @@ pub enum Violation {
         value: String,
         /// What it must be.
         demand: &'static str,
+    },
+    /// A section that the recipe needs.
+    #[error(
+        "missing section [{section}]: a recipe has [approximate], [realise] and [bem], or [sinusoid] alone"
+    )]
+    MissingSection {
+        /// Its name.
+        section: &'static str,
+    },
+    /// A section beside one that stands alone.
+    #[error("section [{section}] beside [sinusoid], which stands alone: make two recipes of it")]
+    SectionBesideSinusoid {
+        /// Its name.
+        section: &'static str,
     },
     /// The description of the scan files.
     #[error("[ingest.text]: {0}")]
@@ -121,15 +169,64 @@ impl Recipe {
         for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
             *scans = folder.join(&*scans);
         }
-        recipe.bem.rubber = folder.join(&recipe.bem.rubber);
+        let rubbers = [
+            recipe.bem.as_mut().map(|bem| &mut bem.rubber),
+            recipe.sinusoid.as_mut().map(|sinusoid| &mut sinusoid.rubber),
+        ];
+        for rubber in rubbers.into_iter().flatten() {
+            *rubber = folder.join(&*rubber);
+        }
         for published in &mut recipe.tables.published {
             published.file = folder.join(&published.file);
         }
         Ok(recipe)
     }
 
+    /// What the recipe asks for.
+    ///
+    /// # Errors
+    /// [`Violation::MissingSection`], [`Violation::SectionBesideSinusoid`].
+    pub fn work(&self) -> Result<Work<'_>, Violation> {
+        let Some(sinusoid) = &self.sinusoid else {
+            return self.chain().map(Work::Chain);
+        };
+        let others = [
+            ("ingest", self.ingest.is_some()),
+            ("characterise", self.characterise != Characterise::default()),
+            ("approximate", self.approximate.is_some()),
+            ("realise", self.realise.is_some()),
+            ("bem", self.bem.is_some()),
+            ("tables", self.tables != Tables::default()),
+        ];
+        match others.into_iter().find(|(_, present)| *present) {
+            Some((section, _)) => Err(Violation::SectionBesideSinusoid { section }),
+            None => Ok(Work::Sinusoid(sinusoid)),
+        }
+    }
+
+    fn chain(&self) -> Result<Chain<'_>, Violation> {
+        let missing = |section| Violation::MissingSection { section };
+        Ok(Chain {
+            ingest: self.ingest.as_ref(),
+            characterise: &self.characterise,
+            approximate: self.approximate.as_ref().ok_or(missing("approximate"))?,
+            realise: self.realise.as_ref().ok_or(missing("realise"))?,
+            bem: self.bem.as_ref().ok_or(missing("bem"))?,
+            tables: &self.tables,
+        })
+    }
+
     fn check(&self) -> Result<(), Violation> {
-        self.ingest.as_ref().map_or(Ok(()), Ingest::check)?;
+        match self.work()? {
+            Work::Chain(chain) => chain.check(),
+            Work::Sinusoid(sinusoid) => sinusoid.check(),
+        }
+    }
+}
+
+impl Chain<'_> {
+    fn check(&self) -> Result<(), Violation> {
+        self.ingest.map_or(Ok(()), Ingest::check)?;
         self.characterise.check()?;
         self.approximate.check()?;
         self.realise.check()?;

@@ -3,7 +3,7 @@
 
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
-use crate::stages::{approximate, bem, characterise, ingest, realise, tables};
+use crate::stages::{approximate, bem, characterise, ingest, realise, sinusoid, tables};
 use schemars::schema_for;
 use serde_json::Value;
 
@@ -33,6 +33,11 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         arrays(&bem::fields_schema()),
         table::<tables::FrictionRow>()?,
         table::<tables::ComparisonRow>()?,
+        table::<sinusoid::PointRow>()?,
+        table::<sinusoid::AsymptoteRow>()?,
+        table::<sinusoid::FieldRow>()?,
+        table::<sinusoid::PeakRow>()?,
+        table::<sinusoid::AgreementRow>()?,
     ])
 }
 

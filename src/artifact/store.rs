@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use std::ops::Deref;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Deserialize;
 use tempfile::TempDir;
@@ -157,6 +158,21 @@ pub struct RunFolder {
     _lock: File,
 }
 
+/// A program that another thread is just starting holds a copy of every open file until it runs,
+/// also of the lock of a folder that was closed meanwhile: a lock counts from this many tries on.
+const LOCK_TRIES: u32 = 50;
+const BETWEEN_TRIES: Duration = Duration::from_millis(20);
+
+fn lock_patiently(lock: &File) -> Result<(), TryLockError> {
+    for _ in 1..LOCK_TRIES {
+        match lock.try_lock() {
+            Err(TryLockError::WouldBlock) => std::thread::sleep(BETWEEN_TRIES),
+            other => return other,
+        }
+    }
+    lock.try_lock()
+}
+
 impl Deref for RunFolder {
     type Target = RunView;
 
@@ -176,7 +192,7 @@ impl RunFolder {
         fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
         let lock_path = path.join(LOCK_FILE);
         let lock = File::create(&lock_path).map_err(ArtifactError::io("create", &lock_path))?;
-        match lock.try_lock() {
+        match lock_patiently(&lock) {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(ArtifactError::Locked { path }),
             Err(TryLockError::Error(error)) => {

@@ -1,5 +1,7 @@
 //! `asperity export`: friction tables for people and other programs.
 
+mod study;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -22,7 +24,11 @@ Examples:
   All tables for a paper, as one Parquet table, and as a figure:
     asperity export runs/asphalt --format latex --to friction.tex
     asperity export runs/asphalt --format parquet --to friction.parquet
-    asperity export runs/asphalt --format svg --to friction.svg";
+    asperity export runs/asphalt --format svg --to friction.svg
+  The study of one sine wave as a document, a figure and one CSV file for each table:
+    asperity export runs/sinusoid --format markdown --to study.md
+    asperity export runs/sinusoid --format svg --to study.svg
+    asperity export runs/sinusoid --format csv --to study";
 
 /// Export the averaged friction tables of a run.
 #[derive(Debug, Args)]
@@ -73,6 +79,9 @@ impl Export {
             )));
         }
         let view = RunView::of(&self.run);
+        if view.stage_manifest("sinusoid").map_err(CliError::input)?.is_some() {
+            return self.study(&view);
+        }
         let (rows, _) =
             view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;
         if self.comparison {

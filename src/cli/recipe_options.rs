@@ -33,8 +33,8 @@ impl RecipeOptions {
         if !self.scans.is_empty() {
             let Some(ingest) = &mut recipe.ingest else {
                 return Err(CliError::input(format!(
-                    "{} states its waves itself ([[approximate.given]]) and reads no scans: leave \
-                     --scans out",
+                    "{} states its waves itself ([[approximate.given]] or [sinusoid]) and reads no \
+                     scans: leave --scans out",
                     self.recipe.display()
                 )));
             };
@@ -62,7 +62,9 @@ impl From<PipelineError> for CliError {
             return Self::Interrupted;
         }
         let is_input = match &error {
-            PipelineError::StaleInput { .. } => true,
+            PipelineError::StaleInput { .. }
+            | PipelineError::Recipe(_)
+            | PipelineError::NoSuchStage { .. } => true,
             PipelineError::Artifact(_) => false,
             PipelineError::Stage { source, .. } => matches!(
                 **source,
@@ -77,6 +79,7 @@ impl From<PipelineError> for CliError {
                     | StageError::Ladder(_)
                     | StageError::NoWaves { .. }
                     | StageError::Rubber(_)
+                    | StageError::NoRelaxation { .. }
             ),
         };
         if is_input { Self::input(error) } else { Self::failure(error) }

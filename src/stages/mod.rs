@@ -14,6 +14,7 @@ pub mod bem;
 pub mod characterise;
 pub mod ingest;
 pub mod realise;
+pub mod sinusoid;
 pub mod tables;
 
 use crate::artifact::{ArtifactError, Pending, SchemaVersion};
@@ -39,11 +40,13 @@ pub enum Stage {
     Bem,
     /// Averaged friction tables.
     Tables,
+    /// Three models on one sine; no part of the chain.
+    Sinusoid,
 }
 
 impl Stage {
-    /// All stages in the order of the data.
-    pub const ALL: [Self; 6] = [
+    /// The stages from scans to tables in the order of the data.
+    pub const CHAIN: [Self; 6] = [
         Self::Ingest,
         Self::Characterise,
         Self::Approximate,
@@ -61,6 +64,7 @@ impl Stage {
             Self::Realise => "realise",
             Self::Bem => "bem",
             Self::Tables => "tables",
+            Self::Sinusoid => "sinusoid",
         }
     }
 }
@@ -214,6 +218,20 @@ pub enum StageError {
         /// Why.
         source: Box<crate::contact::curve::CurveError<SolveError>>,
     },
+    /// A rubber that has no relaxation time to measure speeds by.
+    #[error("rubber {rubber} has no branches: the Deborah number needs a relaxation time")]
+    NoRelaxation {
+        /// Name of the rubber.
+        rubber: String,
+    },
+    /// A single solve, for another reason than that it has no solution.
+    #[error("{problem}: {source}")]
+    Solve {
+        /// Which one.
+        problem: String,
+        /// Why.
+        source: Box<SolveError>,
+    },
     /// A published table.
     #[error("published table {}: {source}; it needs the columns area_fraction and average", path.display())]
     Published {
@@ -233,6 +251,9 @@ pub enum SolveError {
     /// The contact.
     #[error(transparent)]
     Contact(#[from] ContactError),
+    /// The finite-deformation contact.
+    #[error(transparent)]
+    FiniteDeformation(#[from] crate::fem::error::FemError),
     /// The store of solves.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),

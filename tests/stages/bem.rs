@@ -61,7 +61,7 @@ fn every_solve_is_a_solution_and_the_curve_holds_between_them() {
         let contact_points = row.contact_area_fraction * row.grid_points as f64;
         assert!(contact_points >= 100.0 || row.grid_points == 4096, "{row:?}");
     }
-    let rubber = read_rubber(&recipe.bem.rubber).unwrap();
+    let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
     let surfaces = read_surfaces(&view).unwrap();
     for row in &curves {
         let same = |solve: &&SolveRow| {

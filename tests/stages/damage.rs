@@ -12,7 +12,7 @@ fn outputs(out: &Path) -> Vec<(Stage, String)> {
         let manifest = view.stage_manifest(stage.name()).unwrap().unwrap();
         manifest.outputs.into_iter().map(move |output| (stage, output.file)).collect::<Vec<_>>()
     };
-    Stage::ALL.into_iter().flat_map(files).collect()
+    Stage::CHAIN.into_iter().flat_map(files).collect()
 }
 
 /// What happens to the bytes of a file.

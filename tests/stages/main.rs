@@ -11,6 +11,7 @@ mod golden;
 mod interruption;
 mod scans;
 mod schemas;
+mod sinusoid;
 mod waves;
 
 use asperity::artifact::{Digest, RunView};
@@ -55,7 +56,8 @@ fn stale(recipe: &Recipe, out: &Path) -> Vec<(Stage, String)> {
 /// Content digests of all files of all finished stages.
 fn digests(out: &Path) -> BTreeMap<String, Digest> {
     let view = RunView::of(out);
-    let manifests = Stage::ALL.iter().filter_map(|s| view.stage_manifest(s.name()).unwrap());
+    let stages = Stage::CHAIN.iter().chain([&Stage::Sinusoid]);
+    let manifests = stages.filter_map(|s| view.stage_manifest(s.name()).unwrap());
     manifests
         .flat_map(|m| {
             let name = move |file: &str| format!("{}/{file}", m.stage);

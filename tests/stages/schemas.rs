@@ -34,7 +34,7 @@ fn the_committed_schemas_are_those_of_the_program() {
 fn every_output_of_a_run_has_a_schema() {
     let (_campaign, view) = run_with_fields();
     let names: BTreeSet<String> = documents().unwrap().into_iter().map(|(name, _)| name).collect();
-    for stage in Stage::ALL {
+    for stage in Stage::CHAIN {
         for output in view.stage_manifest(stage.name()).unwrap().unwrap().outputs {
             let name = format!("{}.v{}", output.schema, output.schema_version);
             assert!(names.contains(&name), "{stage}/{}: {name}", output.file);

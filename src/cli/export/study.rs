@@ -1,0 +1,59 @@
+//! Export of the study of one sine wave.
+
+use super::{Export, Format};
+use crate::artifact::{RunView, data_frame, write_csv};
+use crate::cli::CliError;
+use crate::report::{Study, study_figure};
+use crate::stages::sinusoid::{
+    AGREEMENT_FILE, ASYMPTOTES_FILE, PEAKS_FILE, POINTS_FILE, PRESSURES_FILE,
+};
+
+const STAGE: &str = "sinusoid";
+
+impl Export {
+    pub(super) fn study(&self, view: &RunView) -> Result<(), CliError> {
+        if self.comparison || self.waves.is_some() || self.speed.is_some() {
+            return Err(CliError::input(
+                "the study of one sine has no tables to choose from: leave --comparison, --waves \
+                 and --speed out",
+            ));
+        }
+        match self.format {
+            Format::Markdown => self.text(&read(view)?.markdown()),
+            Format::Svg => self.text(&study_figure(&read(view)?).map_err(CliError::failure)?),
+            Format::Csv => self.study_csv(view),
+            Format::Latex | Format::Parquet => {
+                Err(CliError::input("the study of one sine is exported as markdown, csv or svg"))
+            }
+        }
+    }
+
+    /// One CSV file for each table, named like it.
+    fn study_csv(&self, view: &RunView) -> Result<(), CliError> {
+        let Some(folder) = &self.to else {
+            return Err(CliError::input("there are several tables: give a folder with --to"));
+        };
+        std::fs::create_dir_all(folder).map_err(|error| {
+            CliError::failure(format!("cannot create {}: {error}", folder.display()))
+        })?;
+        let manifest = view.stage_manifest(STAGE).map_err(CliError::input)?;
+        for output in manifest.into_iter().flat_map(|manifest| manifest.outputs) {
+            let mut frame = data_frame(&view.file(STAGE, &output.file)).map_err(CliError::input)?;
+            let path = folder.join(&output.file).with_extension("csv");
+            self.by_rename(&path, |temporary| write_csv(&mut frame, temporary))?;
+        }
+        Ok(())
+    }
+}
+
+fn read(view: &RunView) -> Result<Study, CliError> {
+    let has_pressures = view.file(STAGE, PRESSURES_FILE).exists();
+    let points = |file| view.read_table(STAGE, file).map_err(CliError::input);
+    Ok(Study {
+        points: points(POINTS_FILE)?.0,
+        pressures: if has_pressures { points(PRESSURES_FILE)?.0 } else { Vec::new() },
+        asymptotes: view.read_table(STAGE, ASYMPTOTES_FILE).map_err(CliError::input)?.0,
+        peaks: view.read_table(STAGE, PEAKS_FILE).map_err(CliError::input)?.0,
+        agreement: view.read_table(STAGE, AGREEMENT_FILE).map_err(CliError::input)?.0,
+    })
+}

@@ -1,0 +1,285 @@
+//! sinusoid: one sine wave under three models, over eight decades of speed (thesis, chapter 4).
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `rows` | the tables |
+//! | `problem` | one wave, model, speed and mesh: solved or read from the store |
+//! | `points` | two meshes to a value with its mesh error |
+//! | `conclusions` | friction maxima, and how far the models agree |
+
+mod conclusions;
+mod points;
+mod problem;
+mod rows;
+
+pub use problem::Model;
+pub use rows::{AgreementRow, AsymptoteRow, FieldRow, PeakRow, PointRow};
+
+use super::{Context, StageError, schema_of};
+use crate::artifact::{Metadata, SchemaVersion, SolveStore};
+use crate::recipe::{Violation, demand};
+use crate::rubber::{Rubber, read_rubber};
+use points::{Case, Scale};
+use problem::Outcome;
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[sinusoid]` of a recipe, which stands alone.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sinusoid {
+    /// Rubber file.
+    pub rubber: PathBuf,
+    /// Wavelength L of the sine in mm; also the period of the block.
+    pub wavelength_mm: f64,
+    /// Aspect ratios D/L, amplitude over wavelength; the root mean square slope is √2 π D/L.
+    pub aspect_ratios: Vec<f64>,
+    /// Sliding speeds in mm/s, ascending.
+    pub speeds_mm_s: Vec<f64>,
+    /// Mean pressure in MPa.
+    pub pressure_mpa: f64,
+    /// Columns of the finer of two finite-element meshes; the coarser has half as many.
+    #[serde(default = "default_columns")]
+    pub columns: u32,
+    /// Points of the finer of two grids of the half-space; the coarser has half as many.
+    #[serde(default = "default_half_space_points")]
+    pub half_space_points: u32,
+    /// Relative differences up to which two models are said to agree.
+    #[serde(default = "default_levels")]
+    pub agreement_levels: Vec<f64>,
+    /// Where pressure and separation are kept as fields; nowhere if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fields: Option<Fields>,
+    /// Friction against pressure; none if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_dependence: Option<PressureDependence>,
+}
+
+/// Section `[sinusoid.fields]`: the points of the sweep at which fields are kept, for all models.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fields {
+    /// Aspect ratios, each also in `sinusoid.aspect_ratios`.
+    pub aspect_ratios: Vec<f64>,
+    /// Speeds in mm/s, each also in `sinusoid.speeds_mm_s`.
+    pub speeds_mm_s: Vec<f64>,
+}
+
+/// Section `[sinusoid.pressure_dependence]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PressureDependence {
+    /// Aspect ratio D/L.
+    pub aspect_ratio: f64,
+    /// Sliding speeds in mm/s.
+    pub speeds_mm_s: Vec<f64>,
+    /// Mean pressures in MPa, ascending.
+    pub pressures_mpa: Vec<f64>,
+}
+
+fn default_columns() -> u32 {
+    192
+}
+
+fn default_half_space_points() -> u32 {
+    4096
+}
+
+fn default_levels() -> Vec<f64> {
+    vec![0.05, 0.1]
+}
+
+fn ascending(values: &[f64], range: std::ops::RangeInclusive<f64>) -> bool {
+    !values.is_empty()
+        && values.iter().all(|value| range.contains(value))
+        && values.windows(2).all(|pair| pair[0] < pair[1])
+}
+
+impl Sinusoid {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        let wavelength = self.wavelength_mm;
+        let key = "sinusoid.wavelength_mm";
+        demand((1e-6..=1e6).contains(&wavelength), key, wavelength, "between 1e-6 and 1e6")?;
+        check_list("sinusoid.aspect_ratios", &self.aspect_ratios, 1e-4..=1.0, RATIOS)?;
+        check_list("sinusoid.speeds_mm_s", &self.speeds_mm_s, 1e-9..=1e9, SPEEDS)?;
+        let pressure = self.pressure_mpa;
+        let key = "sinusoid.pressure_mpa";
+        demand((1e-6..=1e4).contains(&pressure), key, pressure, "between 1e-6 and 1e4")?;
+        let columns = self.columns;
+        let even = columns.is_multiple_of(2) && (16..=4096).contains(&columns);
+        demand(even, "sinusoid.columns", columns, "even, 16 to 4096")?;
+        let points = self.half_space_points;
+        let even = points.is_multiple_of(2) && (64..=1 << 20).contains(&points);
+        demand(even, "sinusoid.half_space_points", points, "even, 64 to 1048576")?;
+        let levels = "at least one, ascending, from 1e-4 to 1";
+        check_list("sinusoid.agreement_levels", &self.agreement_levels, 1e-4..=1.0, levels)?;
+        self.fields.as_ref().map_or(Ok(()), |fields| self.check_fields(fields))?;
+        self.pressure_dependence.as_ref().map_or(Ok(()), PressureDependence::check)
+    }
+
+    fn check_fields(&self, fields: &Fields) -> Result<(), Violation> {
+        for (key, wanted, swept) in [
+            ("sinusoid.fields.aspect_ratios", &fields.aspect_ratios, &self.aspect_ratios),
+            ("sinusoid.fields.speeds_mm_s", &fields.speeds_mm_s, &self.speeds_mm_s),
+        ] {
+            let known = wanted.iter().all(|value| swept.contains(value));
+            demand(known, key, wanted, "values of the same key of [sinusoid]")?;
+        }
+        Ok(())
+    }
+
+    /// The parameters with the rubber itself in place of its file: what the results depend on.
+    pub fn resolved(&self, rubber: &Rubber) -> Value {
+        let mut value = json!(self);
+        value["rubber"] = json!(rubber);
+        value
+    }
+
+    fn keeps_fields(&self, aspect_ratio: f64, speed_mm_s: f64) -> bool {
+        self.fields.as_ref().is_some_and(|fields| {
+            fields.aspect_ratios.contains(&aspect_ratio) && fields.speeds_mm_s.contains(&speed_mm_s)
+        })
+    }
+}
+
+const RATIOS: &str = "at least one, ascending, from 1e-4 to 1";
+const SPEEDS: &str = "at least one, ascending, from 1e-9 to 1e9";
+
+impl PressureDependence {
+    fn check(&self) -> Result<(), Violation> {
+        let ratio = [self.aspect_ratio];
+        let key = "sinusoid.pressure_dependence.aspect_ratio";
+        check_list(key, &ratio, 1e-4..=1.0, "between 1e-4 and 1")?;
+        let key = "sinusoid.pressure_dependence.speeds_mm_s";
+        check_list(key, &self.speeds_mm_s, 1e-9..=1e9, SPEEDS)?;
+        let key = "sinusoid.pressure_dependence.pressures_mpa";
+        let pressures = "at least one, ascending, from 1e-6 to 1e4";
+        check_list(key, &self.pressures_mpa, 1e-6..=1e4, pressures)
+    }
+}
+
+fn check_list(
+    key: &'static str,
+    values: &[f64],
+    range: std::ops::RangeInclusive<f64>,
+    wanted: &'static str,
+) -> Result<(), Violation> {
+    demand(ascending(values, range), key, values, wanted)
+}
+
+/// Reads the rubber of a recipe.
+///
+/// # Errors
+/// [`StageError::Rubber`]; [`StageError::NoRelaxation`] for an elastic one.
+pub fn rubber(parameters: &Sinusoid) -> Result<Rubber, StageError> {
+    let rubber = read_rubber(&parameters.rubber)?;
+    if rubber.branches.is_empty() {
+        return Err(StageError::NoRelaxation { rubber: rubber.name });
+    }
+    Ok(rubber)
+}
+
+/// Friction, contact area and separation against speed: `points.arrow`.
+pub const POINTS_FILE: &str = "points.arrow";
+/// The same against pressure, where the recipe asks for it: `pressures.arrow`.
+pub const PRESSURES_FILE: &str = "pressures.arrow";
+/// Elastic limits of slow and fast sliding: `asymptotes.arrow`.
+pub const ASYMPTOTES_FILE: &str = "asymptotes.arrow";
+/// Pressure and separation, where the recipe asks for them: `fields.arrow`.
+pub const FIELDS_FILE: &str = "fields.arrow";
+/// The maximum of friction over speed: `peaks.arrow`.
+pub const PEAKS_FILE: &str = "peaks.arrow";
+/// How far the models agree with the neo-Hookean one: `agreement.arrow`.
+pub const AGREEMENT_FILE: &str = "agreement.arrow";
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![
+        schema_of::<PointRow>(),
+        schema_of::<AsymptoteRow>(),
+        schema_of::<FieldRow>(),
+        schema_of::<PeakRow>(),
+        schema_of::<AgreementRow>(),
+    ]
+}
+
+/// Solves what is not in the store and writes the tables; returns warnings.
+///
+/// All solves are independent of each other, so the numbers depend neither on the number of
+/// threads nor on interruptions.
+///
+/// # Errors
+/// [`StageError::Solve`] for a problem that is not well posed; one that has no solution is a row
+/// that says so. [`StageError::Interrupted`]; solves that are done are kept in the store.
+pub fn run(
+    parameters: &Sinusoid,
+    rubber: &Rubber,
+    store: &SolveStore,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let sweep = Case::sweep(parameters);
+    let pressures = Case::pressures(parameters);
+    let cases: Vec<&Case> = sweep.iter().chain(&pressures).collect();
+    let outcomes = solve_all(&cases, rubber, store, context)?;
+    let (swept, pressed) = outcomes.split_at(sweep.len());
+
+    let scale = Scale::of(rubber, parameters.wavelength_mm);
+    let points = points::rows(&sweep, swept, &scale);
+    let asymptotes = points::asymptotes(parameters, rubber);
+    let peaks = conclusions::peaks(&points);
+    let agreement = conclusions::agreement(&points, &parameters.agreement_levels);
+    let none = Metadata::new();
+    let pending = &mut context.pending;
+    pending.write_table(POINTS_FILE, &points, &none)?;
+    pending.write_table(ASYMPTOTES_FILE, &asymptotes, &none)?;
+    pending.write_table(PEAKS_FILE, &peaks, &none)?;
+    pending.write_table(AGREEMENT_FILE, &agreement, &none)?;
+    if parameters.fields.is_some() {
+        let fields = points::fields(&sweep, swept, &scale);
+        pending.write_table(FIELDS_FILE, &fields, &none)?;
+    }
+    let mut warnings = Vec::from_iter(warning("the sweep", &points));
+    if parameters.pressure_dependence.is_some() {
+        let rows = points::rows(&pressures, pressed, &scale);
+        pending.write_table(PRESSURES_FILE, &rows, &none)?;
+        warnings.extend(warning("the dependence on pressure", &rows));
+    }
+    Ok(warnings)
+}
+
+/// The outcomes of each case on the finer and the coarser mesh.
+type TwoMeshes = [Vec<Outcome>; 2];
+
+fn solve_all(
+    cases: &[&Case],
+    rubber: &Rubber,
+    store: &SolveStore,
+    context: &Context,
+) -> Result<Vec<TwoMeshes>, StageError> {
+    let done = AtomicU64::new(0);
+    let total = 2 * cases.len() as u64;
+    (context.progress)(0, total);
+    let solve = |problem: &problem::Problem| {
+        context.check_interrupt()?;
+        let outcomes = problem.outcomes(rubber, store).map_err(|source| StageError::Solve {
+            problem: problem.to_string(),
+            source: Box::new(source),
+        })?;
+        (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
+        Ok::<_, StageError>(outcomes)
+    };
+    cases.par_iter().map(|case| Ok([solve(&case.finer)?, solve(&case.coarser)?])).collect()
+}
+
+/// How many points have no solution, if any.
+fn warning(what: &str, rows: &[PointRow]) -> Option<String> {
+    let missing = rows.iter().filter(|row| row.friction_coefficient.is_none()).count();
+    (missing > 0).then(|| format!("{missing} of {} points of {what} have no solution", rows.len()))
+}
