@@ -57,8 +57,9 @@ struct Waypoint {
 
 /// Barrier over the roughness on the way.
 const BARRIER: f64 = 1e-3;
-/// Barrier before the contact set is closed.
-const LOW_BARRIER: f64 = 1e-4;
+/// Barriers from which the contact set is closed: the first is the cheapest, the next ones tell contact
+/// from gap more sharply where the iteration does not settle.
+const LOW_BARRIERS: [f64; 3] = [1e-4, 1e-5, 1e-6];
 /// Barrier with which a path begins, and the ratio by which it is lowered then.
 const FIRST_BARRIER: f64 = 0.1;
 const LOWER_BARRIER: f64 = 0.3;
@@ -206,18 +207,21 @@ impl Path {
     /// The exact state at this pressure and its residual; the path itself stays behind the barrier.
     pub fn finish(&mut self) -> Result<(State, f64), Stuck> {
         self.stand_upright(LEAST_SHEAR);
-        let mut state = self.state.clone();
         let pressure = self.pressure;
-        let low = Complementarity::Barrier(LOW_BARRIER * self.scene.heights.roughness);
-        let mut problem = self.problem(pressure);
-        let first = problem.converge(&mut state, low, ON_THE_WAY);
-        let last = first.and_then(|cost| {
+        let mut state = self.state.clone();
+        for barrier in LOW_BARRIERS {
+            let low = Complementarity::Barrier(barrier * self.scene.heights.roughness);
+            let cost = self.problem(pressure).converge(&mut state, low, ON_THE_WAY)?;
             self.spend(cost);
+            let mut closed = state.clone();
             let mut problem = self.problem(pressure);
-            problem.converge(&mut state, Complementarity::ActiveSet, AT_THE_END)
-        })?;
-        self.spend(last);
-        Ok((state, last.residual))
+            if let Ok(cost) = problem.converge(&mut closed, Complementarity::ActiveSet, AT_THE_END)
+            {
+                self.spend(cost);
+                return Ok((closed, cost.residual));
+            }
+        }
+        Err(Stuck)
     }
 
     /// The mesh at this point.
