@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use hdf5::types::{FloatSize, TypeDescriptor, VarLenUnicode};
-use hdf5::{Dataset, File, Group, Location};
+use hdf5::{Dataset, File, FileBuilder, Group, Location};
 use serde::Serialize;
 
 use super::content::hash_text;
@@ -104,7 +104,7 @@ pub fn write_arrays(
         ("content_digest", Attribute::Text(digest.to_string())),
     ];
     let write = || -> hdf5::Result<()> {
-        let file = File::create(path)?;
+        let file = unlocked().create(path)?;
         for (name, value) in &header {
             write_attribute(&file, name, value)?;
         }
@@ -210,6 +210,16 @@ fn write_attribute(location: &Location, name: &str, value: &Attribute) -> hdf5::
     }
 }
 
+/// Access without HDF5's own lock of the file. That lock outlives its holder in any process started
+/// meanwhile, because HDF5 lets its descriptors be inherited, and network file systems may lack
+/// locks. It guards against nothing here: a run folder has a lock of its own, and files appear
+/// whole, by renaming.
+pub(super) fn unlocked() -> FileBuilder {
+    let mut builder = File::with_options();
+    builder.with_fapl(|access| access.file_locking(false));
+    builder
+}
+
 /// An open file and its path for the messages.
 struct Reader<'a> {
     path: &'a Path,
@@ -220,7 +230,8 @@ impl<'a> Reader<'a> {
     fn open(path: &'a Path) -> Result<Self, ArtifactError> {
         // Separates a file that is not there or not ours to read from one that is not HDF5.
         std::fs::File::open(path).map_err(ArtifactError::io("open", path))?;
-        let file = File::open(path)
+        let file = unlocked()
+            .open(path)
             .map_err(|error| ArtifactError::unreadable(path, FORMAT, innermost(&error)))?;
         Ok(Self { path, file })
     }

@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+use crate::artifact::arrays::unlocked;
 use crate::artifact::*;
 
 const SCHEMA: &str = "asperity.test.arrays";
@@ -139,16 +140,27 @@ fn damaged_and_foreign_files_are_refused() {
 #[test]
 fn a_foreign_hdf5_file_lacks_schema_or_unit() {
     let (_folder, path) = place();
-    hdf5::File::create(&path).unwrap().close().unwrap();
+    unlocked().create(&path).unwrap().close().unwrap();
     let schema = read_arrays(&path, SCHEMA, 3).unwrap_err().to_string();
     assert!(schema.contains("has no attribute `version` of the file"), "{schema}");
 
     write(&path, &datasets());
-    let file = hdf5::File::open_rw(&path).unwrap();
+    let file = unlocked().open_rw(&path).unwrap();
     file.new_dataset::<f64>().shape(3).create("extra").unwrap();
     file.close().unwrap();
     let unit = read_arrays(&path, SCHEMA, 3).unwrap_err().to_string();
     assert!(unit.contains("has no attribute `unit` of dataset `extra`"), "{unit}");
+}
+
+/// A process started while a file is open inherits what HDF5 locked, and keeps it.
+#[test]
+fn a_lock_that_another_holds_on_the_file_does_not_matter() {
+    let (_folder, path) = place();
+    std::fs::write(&path, "").unwrap();
+    let held = std::fs::File::open(&path).unwrap();
+    held.lock().unwrap();
+    write(&path, &datasets());
+    assert_eq!(read_arrays(&path, SCHEMA, 3).unwrap().len(), 3);
 }
 
 #[test]
