@@ -27,7 +27,7 @@ use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
 use newton::Stuck;
 use path::{Path, Scene};
 use solution::SteadySolution;
-use state::Heights;
+use state::{Heights, State};
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -174,6 +174,11 @@ impl SteadyContact {
                 range: "positive and finite",
             });
         }
+        if let Some(path) = &mut self.path
+            && let Some(exact) = path.finish_nearby(pressure)
+        {
+            return Ok(read(path, exact, &self.scene, self.speed, pressure));
+        }
         let arrived = match &mut self.path {
             Some(path) => {
                 path.return_towards(pressure);
@@ -233,17 +238,26 @@ impl SteadyContact {
 
 /// The exact solution at the point a path has reached.
 fn conclude(path: &mut Path, scene: &Scene, speed: f64) -> Result<SteadySolution, Stuck> {
-    let before = path.cost;
+    let exact = path.finish()?;
     let pressure = path.pressure;
-    let (state, residual) = path.finish()?;
+    Ok(read(path, exact, scene, speed, pressure))
+}
+
+/// What an exact state and its residual say, with all that was spent since the last one.
+fn read(
+    path: &mut Path,
+    (state, residual): (State, f64),
+    scene: &Scene,
+    speed: f64,
+    pressure: f64,
+) -> SteadySolution {
     let solution = SteadySolution::read(&state, path.level(), scene, speed, pressure, residual);
     let cost = path.take_cost();
-    debug_assert!(cost.newton_steps >= before.newton_steps);
-    Ok(SteadySolution {
+    SteadySolution {
         newton_steps: cost.newton_steps,
         krylov_iterations: cost.krylov_iterations,
         ..solution
-    })
+    }
 }
 
 /// The highest point of a path at which the exact solution converges too.

@@ -37,6 +37,8 @@ pub(super) struct Goal {
     pub acceptable: f64,
     /// Newton steps after which it is given up.
     pub most_steps: usize,
+    /// Residual above which it is given up.
+    pub highest: f64,
 }
 
 /// What an iteration cost.
@@ -91,8 +93,10 @@ struct NodeLaw {
     active: bool,
 }
 
-/// Accuracy of the linear solves.
-const FORCING: f64 = 1e-3;
+/// Accuracy of the linear solves behind the barrier, where steps are cut short anyway, and of those
+/// that close the contact.
+const FORCING: f64 = 3e-3;
+const CLOSING_FORCING: f64 = 1e-3;
 const MOST_KRYLOV: usize = 400;
 /// A step goes this far towards a vanishing force or gap.
 const TO_BOUNDARY: f64 = 0.98;
@@ -127,6 +131,9 @@ impl Problem<'_> {
         };
         let mut active: Option<Vec<bool>> = None;
         for step in 0..goal.most_steps {
+            if imbalance.norm > goal.highest {
+                return Err(Stuck);
+            }
             let nodes = self.node_laws(state, &imbalance, law);
             let now: Vec<bool> = nodes.iter().map(|node| node.active).collect();
             let settled = match law {
@@ -142,7 +149,7 @@ impl Problem<'_> {
                 return Ok(cost);
             }
             let (change, iterations) =
-                self.direction(state, &imbalance, &nodes, &memory).ok_or(Stuck)?;
+                self.direction(state, &imbalance, &nodes, &memory, law).ok_or(Stuck)?;
             cost.newton_steps += 1;
             cost.krylov_iterations += iterations;
             let growth = if step < 5 { 10.0 } else { 2.0 };
@@ -252,6 +259,7 @@ impl Problem<'_> {
         imbalance: &Imbalance,
         nodes: &[NodeLaw],
         memory: &Memory,
+        law: Complementarity,
     ) -> Option<(Vec<f64>, usize)> {
         let level = &*self.level;
         let unknowns = level.unknowns;
@@ -271,7 +279,11 @@ impl Problem<'_> {
         // Preconditioned from the right, so that the norm is that of the unbalanced forces: in
         // displacements the stiff resistance to changes of volume would not be seen.
         right[unknowns.own()] *= self.modulus;
-        let tolerance = FORCING * euclidean_norm(&right);
+        let forcing = match law {
+            Complementarity::Barrier(_) => FORCING,
+            Complementarity::ActiveSet => CLOSING_FORCING,
+        };
+        let tolerance = forcing * euclidean_norm(&right);
         let limits = KrylovLimits { tolerance, max_iterations: MOST_KRYLOV };
         let mut scratch = vec![0.0; unknowns.count()];
         let operator = |x: &[f64], out: &mut [f64]| {

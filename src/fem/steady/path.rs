@@ -45,6 +45,8 @@ pub(super) struct Path {
     pub cost: Cost,
     /// The points passed on this mesh, of growing pressure.
     passed: Vec<Waypoint>,
+    /// The exact state found last.
+    closed: Option<Waypoint>,
 }
 
 /// A point of a path that was passed.
@@ -74,9 +76,15 @@ const MOST_SHEAR: f64 = 0.35;
 /// Shear at which it is worth while where the path is stuck.
 const LEAST_SHEAR: f64 = 0.05;
 /// On the way the path need not be met exactly.
-const ON_THE_WAY: Goal = Goal { residual: 1e-3, acceptable: 1e-3, most_steps: 25 };
+const ON_THE_WAY: Goal =
+    Goal { residual: 1e-3, acceptable: 1e-3, most_steps: 25, highest: f64::INFINITY };
 /// See [`super::solution::SteadySolution::residual`].
-const AT_THE_END: Goal = Goal { residual: 1e-9, acceptable: 1e-8, most_steps: 30 };
+const AT_THE_END: Goal =
+    Goal { residual: 1e-9, acceptable: 1e-8, most_steps: 30, highest: f64::INFINITY };
+/// Where a solution is nearby. It converges at once or not at all.
+const NEARBY: Goal = Goal { most_steps: 12, highest: 1.5, ..AT_THE_END };
+/// Ratio of two pressures whose solutions are nearby.
+const NEARBY_PRESSURE: f64 = 1.25;
 
 impl Scene {
     fn level(&self, mesh: Mesh) -> Level {
@@ -99,8 +107,9 @@ impl Path {
         let level = scene.level(mesh);
         let cost = Cost::default();
         let scene = Arc::clone(scene);
+        let (passed, closed) = (Vec::new(), None);
         let mut path =
-            Self { scene, level, state, pressure, step: FIRST_STEP, cost, passed: Vec::new() };
+            Self { scene, level, state, pressure, step: FIRST_STEP, cost, passed, closed };
         loop {
             path.converge(pressure, barrier, ON_THE_WAY)?;
             if barrier <= BARRIER {
@@ -152,6 +161,7 @@ impl Path {
     /// Goes on with another mesh of the same block, from the highest pressure from which it can be
     /// entered; coarse solutions of large contacts are too far from fine ones.
     pub fn refine(&mut self, mesh: &Mesh) -> Result<(), Stuck> {
+        self.closed = None;
         let mut passed = std::mem::take(&mut self.passed);
         let mut highest = f64::INFINITY;
         while let Some(waypoint) = passed.pop() {
@@ -218,10 +228,45 @@ impl Path {
             if let Ok(cost) = problem.converge(&mut closed, Complementarity::ActiveSet, AT_THE_END)
             {
                 self.spend(cost);
+                self.keep_closed(pressure, &closed);
                 return Ok((closed, cost.residual));
             }
         }
         Err(Stuck)
+    }
+
+    /// The exact state at a pressure near the one finished last, straight from that state: half
+    /// the work of a step of the path, which stays where it is.
+    pub fn finish_nearby(&mut self, pressure: f64) -> Option<(State, f64)> {
+        let Waypoint { pressure: from, mut state, mesh } = self.closed.clone()?;
+        let ratio = pressure / from;
+        if ratio.max(1.0 / ratio) > NEARBY_PRESSURE {
+            return None;
+        }
+        // Nearly in proportion to the pressure.
+        let shear = ratio * state.shear(&mesh);
+        let upright = Mesh { skew: -shear, ..mesh.clone() };
+        let stands = (mesh.skew + shear).abs() <= LEAST_SHEAR;
+        let material = self.level.block.material().clone();
+        self.level.block = Block::new(
+            if stands {
+                mesh
+            } else {
+                state = transfer(&state, &mesh, &upright);
+                upright
+            },
+            material,
+        );
+        let law = Complementarity::ActiveSet;
+        let cost = self.problem(pressure).converge(&mut state, law, NEARBY).ok()?;
+        self.spend(cost);
+        self.keep_closed(pressure, &state);
+        Some((state, cost.residual))
+    }
+
+    fn keep_closed(&mut self, pressure: f64, state: &State) {
+        let mesh = self.level.block.mesh().clone();
+        self.closed = Some(Waypoint { pressure, state: state.clone(), mesh });
     }
 
     /// The mesh at this point.
