@@ -73,8 +73,13 @@ const SMALLEST_STEP: f64 = 1.02;
 const NEXT_ENTRY: f64 = 0.7;
 /// Shear of the elements beyond which rows are shifted anew.
 const MOST_SHEAR: f64 = 0.35;
-/// Shear at which it is worth while where the path is stuck.
+/// Shear at which it is worth while where the path is stuck, and at its end.
 const LEAST_SHEAR: f64 = 0.05;
+/// Shear with which a solution counts; a shear of 1 would change friction by some percent, this one
+/// by less than a thousandth.
+const MOST_FINAL_SHEAR: f64 = 0.1;
+/// The smallest part of a shift that is tried.
+const SMALLEST_SHIFT: f64 = 0.2;
 /// On the way the path need not be met exactly.
 const ON_THE_WAY: Goal =
     Goal { residual: 1e-3, acceptable: 1e-3, most_steps: 25, highest: f64::INFINITY };
@@ -217,6 +222,9 @@ impl Path {
     /// The exact state at this pressure and its residual; the path itself stays behind the barrier.
     pub fn finish(&mut self) -> Result<(State, f64), Stuck> {
         self.stand_upright(LEAST_SHEAR);
+        if self.slant().abs() > MOST_FINAL_SHEAR {
+            return Err(Stuck);
+        }
         let pressure = self.pressure;
         let mut state = self.state.clone();
         for barrier in LOW_BARRIERS {
@@ -325,28 +333,29 @@ impl Path {
         self.cost.krylov_iterations += cost.krylov_iterations;
     }
 
-    /// Shifts the rows so that the mean shear leaves the elements upright, if they are further off
-    /// than that; says whether it did.
-    fn stand_upright(&mut self, most_shear: f64) -> bool {
-        let mesh = self.level.block.mesh().clone();
-        let shear = self.state.shear(&mesh);
-        if (mesh.skew + shear).abs() <= most_shear {
-            return false;
+    /// Shear by which the elements miss being upright on average.
+    fn slant(&self) -> f64 {
+        let mesh = self.level.block.mesh();
+        mesh.skew + self.state.shear(mesh)
+    }
+
+    /// Shifts the rows so that the mean shear leaves the elements upright to within `most_shear`,
+    /// at once or, where that is too far for the state to follow, in parts.
+    fn stand_upright(&mut self, most_shear: f64) {
+        let mut share = 1.0;
+        while self.slant().abs() > most_shear && share > SMALLEST_SHIFT {
+            let mesh = self.level.block.mesh().clone();
+            let shifted = Mesh { skew: mesh.skew - share * self.slant(), ..mesh.clone() };
+            let moved = transfer(&self.state, &mesh, &shifted);
+            let before = std::mem::replace(&mut self.state, moved);
+            let material = self.level.block.material().clone();
+            self.level.block = Block::new(shifted, material.clone());
+            self.centre();
+            if self.converge(self.pressure, BARRIER, ON_THE_WAY).is_err() {
+                self.state = before;
+                self.level.block = Block::new(mesh, material);
+                share *= 0.5;
+            }
         }
-        let upright = Mesh { skew: -shear, ..mesh.clone() };
-        let material = self.level.block.material().clone();
-        let skewed = std::mem::replace(
-            &mut self.state,
-            State { displacements: vec![], forces: vec![], gaps: vec![] },
-        );
-        self.state = transfer(&skewed, &mesh, &upright);
-        self.level.block = Block::new(upright, material.clone());
-        self.centre();
-        if self.converge(self.pressure, BARRIER, ON_THE_WAY).is_ok() {
-            return true;
-        }
-        self.state = skewed;
-        self.level.block = Block::new(mesh, material);
-        false
     }
 }
