@@ -1,6 +1,7 @@
 //! The law at one integration point of a steady row.
 
-use super::row::{Inverted, Tensor, strain_change};
+use super::kinematics::{Tensor, strain_change};
+use super::row::Inverted;
 use crate::rubber::finite_strain::{
     FiniteStrainRubber, IDENTITY, Measure, Rheology, Spring, Symmetric, contract, dilatation,
     inverse, one_plus, sandwich,

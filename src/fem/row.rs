@@ -5,12 +5,10 @@
 //! displacements.
 
 use super::filter::Filter;
+use super::kinematics::{Tensor, green_strain};
 use super::mesh::{CENTRE, Element, POINTS};
 use super::point::Point;
 use crate::rubber::finite_strain::{FiniteStrainRubber, IDENTITY, Symmetric, contract, sandwich};
-
-/// A tensor in the plane: components xx, xz, zx, zz.
-pub type Tensor = [f64; 4];
 
 /// What all rows share: the rubber and its memory at one speed.
 #[derive(Debug, Clone)]
@@ -255,26 +253,6 @@ fn displacement_gradient(
         f[3] += z * gradient[1];
     }
     f
-}
-
-/// `C - 1` from the displacement gradient.
-#[inline]
-pub(super) fn green_strain(h: &Tensor) -> Symmetric {
-    [
-        2.0 * h[0] + h[0] * h[0] + h[2] * h[2],
-        2.0 * h[3] + h[1] * h[1] + h[3] * h[3],
-        h[1] + h[2] + h[0] * h[1] + h[2] * h[3],
-    ]
-}
-
-/// Change of the right Cauchy-Green tensor for a change of the deformation.
-#[inline]
-pub(super) fn strain_change(f: &Tensor, df: &Tensor) -> Symmetric {
-    [
-        2.0 * (f[0] * df[0] + f[2] * df[2]),
-        2.0 * (f[1] * df[1] + f[3] * df[3]),
-        f[0] * df[1] + f[2] * df[3] + df[0] * f[1] + df[2] * f[3],
-    ]
 }
 
 /// Weighted product of a tensor with a symmetric one.

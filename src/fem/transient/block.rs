@@ -1,9 +1,9 @@
 //! The block in time: strains, internal tensors, internal forces and their exact tangent.
 
 use super::flow::{FlowRule, FlowStep};
-use super::point::{Part, Response, Tensor, strain_change};
+use super::point::{Part, Response};
+use crate::fem::kinematics::{Tensor, green_strain, nodal_strain_change};
 use crate::fem::mesh::{CENTRE, Element, Mesh, POINTS};
-use crate::fem::row::green_strain;
 use crate::rubber::finite_strain::{
     FiniteStrainRubber, Measure, Spring, Symmetric, contract, dilatation,
 };
@@ -128,7 +128,7 @@ impl TransientBlock {
             let nodes = self.gather(displacements, index);
             let element = &self.elements[index / self.mesh.columns];
             for (point, gradients) in element.gradients.iter().enumerate() {
-                let (part, weight) = (part_of(point) as usize, element.weights[point]);
+                let weight = element.weights[point];
                 let strain = self.deformation(&nodes, gradients)?.1.value();
                 let old_strain = std::mem::replace(&mut self.strains[index][point], strain);
                 let first = (index * POINTS + point) * branches;
@@ -136,8 +136,8 @@ impl TransientBlock {
                     let (past, follows) = (&history.internal[first + k], history.follows[k]);
                     let now = [0, 1, 2].map(|i| past[i] + follows * strain[i]);
                     let before = std::mem::replace(&mut self.internal[first + k], now);
-                    let old = self.rubber.driving_force(branch, &old_strain, &before)[part];
-                    let new = self.rubber.driving_force(branch, &strain, &now)[part];
+                    let old = self.driving_force(point, branch, &old_strain, &before);
+                    let new = self.driving_force(point, branch, &strain, &now);
                     let force = [0, 1, 2].map(|i| 0.5 * (old[i] + new[i]));
                     let flow = [0, 1, 2].map(|i| now[i] - before[i]);
                     heat += weight * contract(&force, &flow);
@@ -145,6 +145,21 @@ impl TransientBlock {
             }
         }
         Ok(heat)
+    }
+
+    /// The part of the force on the flow of a branch that a point stands for.
+    fn driving_force(
+        &self,
+        point: usize,
+        branch: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+    ) -> Symmetric {
+        let [shear, volumetric] = self.rubber.driving_force(branch, strain, internal);
+        match part_of(point) {
+            Part::Shear => shear,
+            Part::Volumetric => volumetric,
+        }
     }
 
     /// Energy in J/m stored in the springs, in the state kept last.
@@ -218,7 +233,7 @@ impl TransientBlock {
 impl Linearised {
     fn add(&mut self, f: &Tensor, gradients: &[[f64; 2]; 4], weight: f64, response: &Response) {
         let changes: [Symmetric; 8] =
-            std::array::from_fn(|i| strain_change(f, &gradients[i / 2], i % 2));
+            std::array::from_fn(|i| nodal_strain_change(f, &gradients[i / 2], i % 2));
         let stress = &response.stress;
         for (i, change) in changes.iter().enumerate() {
             // The forces do the work S : δC / 2.

@@ -5,9 +5,6 @@ use crate::rubber::finite_strain::{
     sandwich,
 };
 
-/// A tensor in the plane: components xx, xz, zx, zz.
-pub type Tensor = [f64; 4];
-
 /// The part of the stress that a point contributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
@@ -131,16 +128,4 @@ struct State<'a> {
     c_inverse: &'a Symmetric,
     c_i: &'a Symmetric,
     follows: f64,
-}
-
-/// Change of `C` when a node moves along x (0) or z (1) by one; `gradient` is that of its shape
-/// function.
-#[inline]
-pub fn strain_change(f: &Tensor, gradient: &[f64; 2], direction: usize) -> Symmetric {
-    let row = [f[2 * direction], f[2 * direction + 1]];
-    [
-        2.0 * row[0] * gradient[0],
-        2.0 * row[1] * gradient[1],
-        row[0] * gradient[1] + row[1] * gradient[0],
-    ]
 }

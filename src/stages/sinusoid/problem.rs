@@ -22,7 +22,7 @@ const SOLVER_REVISION: u32 = 3;
 pub enum Model {
     /// Linear viscoelastic half-space (VHS).
     HalfSpace,
-    /// Linear viscoelastic stress with finite kinematics.
+    /// Linear viscoelastic stress in the logarithmic strain.
     Linear,
     /// Neo-Hooke in finite viscoelasticity.
     NeoHookean,
