@@ -2,13 +2,13 @@
 
 use rustfft::num_complex::Complex64;
 
-/// Solves `v τ dC_i/dξ = C - C_i` with period `N h` for values at equidistant points:
+/// Solves `v τ dm_i/dξ = m - m_i` with period `N h` for values at equidistant points:
 ///
 /// ```text
-/// C_i(ξ) = ∫_0^∞ e^{-s} C(ξ - v τ s) ds
+/// m_i(ξ) = ∫_0^∞ e^{-s} m(ξ - v τ s) ds
 /// ```
 ///
-/// with the cubic through four neighbouring values in place of `C`, integrated exactly. It is of
+/// with the cubic through four neighbouring values in place of `m`, integrated exactly. It is of
 /// fourth order for any ratio `h / (v τ)`: no numerical loss where the relaxation length is far
 /// below the spacing, none where it is far above. One sweep costs `O(N)`.
 #[derive(Debug, Clone, PartialEq)]

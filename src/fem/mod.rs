@@ -22,6 +22,7 @@
 pub mod block;
 pub mod error;
 pub mod filter;
+mod kinematics;
 pub mod local;
 pub mod memory;
 pub mod mesh;

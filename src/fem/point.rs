@@ -1,23 +1,31 @@
 //! The law at one integration point of a steady row.
 
-use super::row::{Inverted, Tensor};
+use super::kinematics::{Tensor, strain_change};
+use super::row::Inverted;
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Rheology, Spring, Symmetric, contract, dilatation, inverse,
-    sandwich,
+    FiniteStrainRubber, IDENTITY, Measure, Rheology, Spring, Symmetric, contract, dilatation,
+    inverse, one_plus, sandwich,
 };
 
-/// Coefficients of the linearised law at a point,
+/// Coefficients of the linearised law at a point: the change of the stress conjugate to the
+/// measure m of the law by those of m and of the internal tensors,
 ///
 /// ```text
-/// shear       δS = μ G δC G - Σ_k μ_k G_k δC_k G_k
-/// volumetric  δS = (c G:δC - Σ_k c_k G_k:δC_k) H - σ G δC G
+/// shear       δT = μ G δm G - Σ_k μ_k G_k δm_k G_k
+/// volumetric  δT = (c G:δm - Σ_k c_k G_k:δm_k) G - σ G δm G
 /// ```
 ///
-/// with `H = G` but for the linear law, where all of them are unit tensors and σ vanishes.
+/// with `G = C⁻¹` and `G_k = C_k⁻¹` under neo-Hooke; under the linear law both are unit tensors and
+/// σ vanishes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Point {
     pub deformation: Tensor,
+    pub measure: Measure,
+    /// T.
+    pub conjugate: Symmetric,
+    /// S.
     pub stress: Symmetric,
+    /// G.
     pub inverse: Symmetric,
     /// μ or c.
     pub modulus: f64,
@@ -30,16 +38,17 @@ impl Point {
     pub fn shear_law(
         &mut self,
         rubber: &FiniteStrainRubber,
-        strain: &Symmetric,
         internal: &mut [Symmetric],
     ) -> Result<(), Inverted> {
         let springs = &rubber.branches;
-        self.stress = rubber.shear_stress_of(&rubber.equilibrium, strain, &[0.0; 3]);
+        let strain = &self.measure.value();
+        self.conjugate = rubber.shear_stress(&rubber.equilibrium, strain, &[0.0; 3]);
         for (spring, internal) in springs.iter().zip(internal) {
-            let stress = rubber.shear_stress_of(spring, strain, internal);
-            (0..3).for_each(|i| self.stress[i] += stress[i]);
+            let stress = rubber.shear_stress(spring, strain, internal);
+            (0..3).for_each(|i| self.conjugate[i] += stress[i]);
             (*internal, _) = metric(rubber.rheology, internal)?;
         }
+        self.stress = self.measure.derivative(&self.conjugate);
         (self.inverse, _) = metric(rubber.rheology, strain)?;
         self.modulus =
             rubber.equilibrium.shear + springs.iter().map(|spring| spring.shear).sum::<f64>();
@@ -50,29 +59,57 @@ impl Point {
     pub fn volumetric_law(
         &mut self,
         rubber: &FiniteStrainRubber,
-        strain: &Symmetric,
         internal: &mut [Symmetric],
         relaxed: &mut [f64],
     ) -> Result<(), Inverted> {
         let half = |spring: &Spring| 0.5 * spring.volumetric;
         let equilibrium = &rubber.equilibrium;
+        let strain = &self.measure.value();
         let (inverse, volume) = metric(rubber.rheology, strain)?;
         self.inverse = inverse;
-        self.stress = rubber.volumetric_stress_of(equilibrium, strain, &[0.0; 3]);
+        self.conjugate = rubber.volumetric_stress(equilibrium, strain, &[0.0; 3]);
         self.modulus = half(equilibrium) * volume;
         self.pressure = half(equilibrium) * (volume - 1.0);
         for ((spring, internal), relaxed) in rubber.branches.iter().zip(internal).zip(relaxed) {
-            let stress = rubber.volumetric_stress_of(spring, strain, internal);
-            (0..3).for_each(|i| self.stress[i] += stress[i]);
+            let stress = rubber.volumetric_stress(spring, strain, internal);
+            (0..3).for_each(|i| self.conjugate[i] += stress[i]);
             let (inverse, past) = metric(rubber.rheology, internal)?;
             *internal = inverse;
             *relaxed = half(spring) * volume / past;
             self.modulus += *relaxed;
             self.pressure += half(spring) * (volume / past - 1.0);
         }
+        self.stress = self.measure.derivative(&self.conjugate);
         Ok(())
     }
 
+    /// Takes over the deformation gradient and the strain `C - 1`.
+    pub fn deform(
+        &mut self,
+        rheology: Rheology,
+        deformation: Tensor,
+        strain: &Symmetric,
+    ) -> Result<(), Inverted> {
+        self.deformation = deformation;
+        self.measure = rheology.measure(strain).ok_or(Inverted)?;
+        Ok(())
+    }
+
+    /// Change of the measure by that of the deformation gradient.
+    #[inline]
+    pub fn measure_change(&self, df: &Tensor) -> Symmetric {
+        self.measure.derivative(&strain_change(&self.deformation, df))
+    }
+
+    /// Change of the second Piola-Kirchhoff stress by those of the conjugate stress and of the
+    /// deformation gradient.
+    #[inline]
+    pub fn stress_change(&self, conjugate: &Symmetric, df: &Tensor) -> Symmetric {
+        let strain = strain_change(&self.deformation, df);
+        self.measure.stress_change(&self.conjugate, conjugate, &strain)
+    }
+
+    /// Change of the conjugate stress of the shear part.
     #[inline]
     pub fn shear_tangent(
         &self,
@@ -89,6 +126,7 @@ impl Point {
         stress
     }
 
+    /// Change of the conjugate stress of the volumetric part.
     #[inline]
     pub fn volumetric_tangent(
         &self,
@@ -114,7 +152,7 @@ fn metric(rheology: Rheology, strain: &Symmetric) -> Result<(Symmetric, f64), In
     }
     let volume = 1.0 + dilatation(strain);
     if volume > 0.0 && strain[0] > -1.0 {
-        Ok((inverse(&[1.0 + strain[0], 1.0 + strain[1], strain[2]]), volume))
+        Ok((inverse(&one_plus(strain)), volume))
     } else {
         Err(Inverted)
     }

@@ -5,12 +5,10 @@
 //! displacements.
 
 use super::filter::Filter;
+use super::kinematics::{Tensor, green_strain};
 use super::mesh::{CENTRE, Element, POINTS};
 use super::point::Point;
 use crate::rubber::finite_strain::{FiniteStrainRubber, IDENTITY, Symmetric, contract, sandwich};
-
-/// A tensor in the plane: components xx, xz, zx, zz.
-pub type Tensor = [f64; 4];
 
 /// What all rows share: the rubber and its memory at one speed.
 #[derive(Debug, Clone)]
@@ -63,34 +61,35 @@ impl Row {
         forces: [&mut [f64]; 2],
     ) -> Result<(), Inverted> {
         let [below, above] = forces;
-        // C - 1 rather than C, so that small strains keep their digits.
+        // From C - 1 rather than C, so that small strains keep their digits.
         let mut strains = vec![[0.0; 3]; self.columns];
         let branches = material.filters.len();
         for kind in 0..POINTS {
             let gradients = &self.element.gradients[kind];
             let range = kind * self.columns..(kind + 1) * self.columns;
             let points = &mut self.points[range];
-            for (column, (point, c)) in points.iter_mut().zip(&mut strains).enumerate() {
+            for (column, (point, m)) in points.iter_mut().zip(&mut strains).enumerate() {
                 let mut f = displacement_gradient(nodes, gradients, column, self.columns);
-                *c = green_strain(&f);
+                let strain = green_strain(&f);
                 f[0] += 1.0;
                 f[3] += 1.0;
                 if f[0] * f[3] - f[1] * f[2] <= 0.0 {
                     return Err(Inverted);
                 }
-                point.deformation = f;
+                point.deform(material.rubber.rheology, f, &strain)?;
+                *m = point.measure.value();
             }
             let first = kind * self.columns * branches;
             let internal = &mut self.internal[first..first + self.columns * branches];
             relax(&material.filters, &strains, internal);
             let weight = self.element.weights[kind];
-            for (column, (point, c)) in points.iter_mut().zip(&strains).enumerate() {
+            for (column, point) in points.iter_mut().enumerate() {
                 let internal = &mut internal[column * branches..(column + 1) * branches];
                 if kind == CENTRE {
                     let relaxed = &mut self.relaxed[column * branches..(column + 1) * branches];
-                    point.volumetric_law(&material.rubber, c, internal, relaxed)?;
+                    point.volumetric_law(&material.rubber, internal, relaxed)?;
                 } else {
-                    point.shear_law(&material.rubber, c, internal)?;
+                    point.shear_law(&material.rubber, internal)?;
                 }
                 let traction = times(&point.deformation, &point.stress, weight);
                 scatter(&traction, gradients, column, self.columns, below, above);
@@ -112,7 +111,7 @@ impl Row {
             let points = &self.points[kind * self.columns..(kind + 1) * self.columns];
             for (column, point) in points.iter().enumerate() {
                 let df = displacement_gradient(nodes, gradients, column, self.columns);
-                strains[column] = strain_change(&point.deformation, &df);
+                strains[column] = point.measure_change(&df);
                 changes[column] = df;
             }
             relax(&material.filters, &strains, &mut memory);
@@ -122,12 +121,13 @@ impl Row {
             for (column, point) in points.iter().enumerate() {
                 let range = column * branches..(column + 1) * branches;
                 let (internal, changed) = (&internal[range.clone()], &memory[range.clone()]);
-                let stress = if kind == CENTRE {
+                let conjugate = if kind == CENTRE {
                     let relaxed = &self.relaxed[range];
                     point.volumetric_tangent(&strains[column], internal, relaxed, changed)
                 } else {
                     point.shear_tangent(&material.rubber, &strains[column], internal, changed)
                 };
+                let stress = point.stress_change(&conjugate, &changes[column]);
                 let elastic = times(&point.deformation, &stress, weight);
                 let geometric = times(&changes[column], &point.stress, weight);
                 let traction = [0, 1, 2, 3].map(|i| elastic[i] + geometric[i]);
@@ -137,6 +137,7 @@ impl Row {
     }
 
     /// Power in W/m that the branches turn into heat at displacements of the row.
+    /// NaN where [`Self::deform`] would fail.
     pub fn dissipation(&self, material: &Material, nodes: [&[f64]; 2]) -> f64 {
         let branches = material.filters.len();
         let mut internal = vec![[0.0; 3]; self.columns * branches];
@@ -145,14 +146,14 @@ impl Row {
             let strains: Vec<Symmetric> = (0..self.columns)
                 .map(|column| {
                     let h = displacement_gradient(nodes, gradients, column, self.columns);
-                    let [xx, zz, xz] = green_strain(&h);
-                    [1.0 + xx, 1.0 + zz, xz]
+                    let measure = material.rubber.rheology.measure(&green_strain(&h));
+                    measure.map_or([f64::NAN; 3], |measure| measure.value())
                 })
                 .collect();
             relax(&material.filters, &strains, &mut internal);
-            for (c, internal) in strains.iter().zip(internal.chunks_exact(branches.max(1))) {
-                for (spring, c_i) in material.rubber.branches.iter().zip(internal) {
-                    let (shear, volumetric) = material.rubber.dissipation(spring, c, c_i);
+            for (strain, internal) in strains.iter().zip(internal.chunks_exact(branches.max(1))) {
+                for (spring, internal) in material.rubber.branches.iter().zip(internal) {
+                    let [shear, volumetric] = material.rubber.dissipation(spring, strain, internal);
                     let part = if kind == CENTRE { volumetric } else { shear };
                     power += self.element.weights[kind] * part;
                 }
@@ -185,7 +186,7 @@ impl Row {
             let relaxed = &self.relaxed[column * branches..(column + 1) * branches];
             let volumetric =
                 point.modulus - relaxed.iter().zip(follows).map(|(c, f)| c * f).sum::<f64>();
-            let stress_of = |strain: &Symmetric| {
+            let conjugate_of = |strain: &Symmetric| {
                 let turned = sandwich(&point.inverse, strain);
                 if kind == CENTRE {
                     let pressure = volumetric * contract(&point.inverse, strain);
@@ -199,7 +200,8 @@ impl Row {
                 for direction in 0..2 {
                     let mut df = [0.0; 4];
                     df[2 * direction..2 * direction + 2].copy_from_slice(gradient);
-                    let elastic = times(f, &stress_of(&strain_change(f, &df)), weight);
+                    let conjugate = conjugate_of(&point.measure_change(&df));
+                    let elastic = times(f, &point.stress_change(&conjugate, &df), weight);
                     let geometric = times(&df, &point.stress, weight);
                     let traction = [0, 1, 2, 3].map(|i| elastic[i] + geometric[i]);
                     for (other, gradient) in gradients.iter().enumerate() {
@@ -251,26 +253,6 @@ fn displacement_gradient(
         f[3] += z * gradient[1];
     }
     f
-}
-
-/// `C - 1` from the displacement gradient.
-#[inline]
-fn green_strain(h: &Tensor) -> Symmetric {
-    [
-        2.0 * h[0] + h[0] * h[0] + h[2] * h[2],
-        2.0 * h[3] + h[1] * h[1] + h[3] * h[3],
-        h[1] + h[2] + h[0] * h[1] + h[2] * h[3],
-    ]
-}
-
-/// Change of the right Cauchy-Green tensor for a change of the deformation.
-#[inline]
-fn strain_change(f: &Tensor, df: &Tensor) -> Symmetric {
-    [
-        2.0 * (f[0] * df[0] + f[2] * df[2]),
-        2.0 * (f[1] * df[1] + f[3] * df[3]),
-        f[0] * df[1] + f[2] * df[3] + df[0] * f[1] + df[2] * f[3],
-    ]
 }
 
 /// Weighted product of a tensor with a symmetric one.

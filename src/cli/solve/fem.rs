@@ -34,7 +34,7 @@ Examples:
     asperity solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 --columns 256 --json
   Pressed in and dragged in time, with friction over time in a file:
     asperity solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 --columns 32 --route transient --series drag.csv
-  The linear law with finite kinematics:
+  Stress linear in the logarithmic strain:
     asperity solve fem --wave 0.0625:0.002 --speed 10 --pressure 0.1 --rheology linear
 
 Exit codes: 0 solved, 1 no solution found or not written, 2 bad input.";

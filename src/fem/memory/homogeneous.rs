@@ -3,8 +3,7 @@
 use super::Block2;
 use crate::fem::block::Block;
 use crate::fem::mesh::{CENTRE, Element};
-use crate::rubber::Rheology;
-use crate::rubber::finite_strain::{IDENTITY, Symmetric, inverse};
+use crate::rubber::finite_strain::{Measure, Symmetric, inverse, one_plus, sandwich};
 use rustfft::num_complex::Complex64;
 
 /// Forces on the lower and the upper row of nodes by displacements of both.
@@ -14,6 +13,7 @@ pub(super) struct RowStiffness(pub [[Block2; 2]; 2]);
 /// The mean state of a row of elements.
 pub(super) struct MeanState {
     deformation: [f64; 4],
+    measure: Measure,
     inverse: Symmetric,
 }
 
@@ -24,12 +24,9 @@ impl MeanState {
         // At constant volume and without stress: row means of a contact that is strongly deformed
         // would have a pressure that is nowhere in the row.
         let deformation = [1.0, shear, 0.0, 1.0];
-        let c = [1.0, 1.0 + shear * shear, shear];
-        let inverse = match rubber.rheology {
-            Rheology::NeoHookean => inverse(&c),
-            Rheology::Linear => IDENTITY,
-        };
-        Self { deformation, inverse }
+        let strain = [0.0, shear * shear, shear];
+        let measure = rubber.rheology.measure(&strain).expect("det C is one");
+        Self { deformation, measure, inverse: inverse(&one_plus(&strain)) }
     }
 
     /// Stiffness of a row at one wavenumber with complex moduli μ and c.
@@ -56,7 +53,7 @@ impl MeanState {
                             + 2.0 * self.inverse[2] * strain[2];
                         self.inverse.map(|g| moduli[1] * trace * g)
                     } else {
-                        sandwich(&self.inverse, &strain).map(|s| moduli[0] * s)
+                        self.shear_change(&strain).map(|s| moduli[0] * s)
                     };
                     for i in 0..2 {
                         let traction = [
@@ -73,11 +70,15 @@ impl MeanState {
         }
         stiffness
     }
-}
 
-/// The product `G X G` with a complex strain.
-fn sandwich(g: &Symmetric, x: &[Complex64; 3]) -> [Complex64; 3] {
-    let (xx, xz) = (x[0] * g[0] + x[2] * g[2], x[2] * g[0] + x[1] * g[2]);
-    let (zx, zz) = (x[0] * g[2] + x[2] * g[1], x[2] * g[2] + x[1] * g[1]);
-    [xx * g[0] + xz * g[2], zx * g[2] + zz * g[1], xx * g[2] + xz * g[1]]
+    /// Change of the stress of the shear part with modulus one by that of `C`.
+    fn shear_change(&self, strain: &[Complex64; 3]) -> [Complex64; 3] {
+        let real = |x: &Symmetric| match &self.measure {
+            Measure::Green(_) => sandwich(&self.inverse, x),
+            // The linear law without stress: from C to ln C and back.
+            measure => measure.derivative(&measure.derivative(x)),
+        };
+        let (re, im) = (real(&strain.map(|x| x.re)), real(&strain.map(|x| x.im)));
+        [0, 1, 2].map(|i| Complex64::new(re[i], im[i]))
+    }
 }

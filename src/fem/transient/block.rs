@@ -1,10 +1,11 @@
 //! The block in time: strains, internal tensors, internal forces and their exact tangent.
 
 use super::flow::{FlowRule, FlowStep};
-use super::point::{Part, Response, Tensor, driving_force, right_cauchy_green, strain_change};
+use super::point::{Part, Response};
+use crate::fem::kinematics::{Tensor, green_strain, nodal_strain_change};
 use crate::fem::mesh::{CENTRE, Element, Mesh, POINTS};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Spring, Symmetric, contract, determinant,
+    FiniteStrainRubber, Measure, Spring, Symmetric, contract, dilatation,
 };
 use rayon::prelude::*;
 
@@ -31,9 +32,9 @@ pub struct TransientBlock {
     mesh: Mesh,
     rubber: FiniteStrainRubber,
     elements: Vec<Element>,
-    /// `C` at each point of each element, elements row after row.
+    /// Strain in the measure of the law at each point of each element, elements row after row.
     strains: Vec<[Symmetric; POINTS]>,
-    /// `C_i`: branches of a point together, points of an element together.
+    /// Internal tensors: branches of a point together, points of an element together.
     internal: Vec<Symmetric>,
 }
 
@@ -50,8 +51,8 @@ impl TransientBlock {
     pub fn new(mesh: Mesh, rubber: FiniteStrainRubber) -> Self {
         let count = mesh.rows() * mesh.columns;
         let elements = (0..mesh.rows()).map(|row| mesh.element(row)).collect();
-        let internal = vec![IDENTITY; count * POINTS * rubber.branches.len()];
-        Self { mesh, rubber, elements, strains: vec![[IDENTITY; POINTS]; count], internal }
+        let internal = vec![[0.0; 3]; count * POINTS * rubber.branches.len()];
+        Self { mesh, rubber, elements, strains: vec![[[0.0; 3]; POINTS]; count], internal }
     }
 
     /// The mesh.
@@ -66,10 +67,10 @@ impl TransientBlock {
             branches.iter().map(|branch| rule.step(time_step, branch.relaxation_time)).collect();
         let follows = steps.iter().map(|step| step.strain).collect();
         let mut internal = Vec::with_capacity(self.internal.len());
-        for (point, c) in self.strains.iter().flatten().enumerate() {
+        for (point, strain) in self.strains.iter().flatten().enumerate() {
             let first = point * branches.len();
             let old = &self.internal[first..first + branches.len()];
-            internal.extend(steps.iter().zip(old).map(|(step, c_i)| step.history(c_i, c)));
+            internal.extend(steps.iter().zip(old).map(|(step, m_i)| step.history(m_i, strain)));
         }
         History { steps, follows, internal }
     }
@@ -103,19 +104,19 @@ impl TransientBlock {
         let mut sum = Linearised { forces: [0.0; 8], stiffness: [[0.0; 8]; 8] };
         for point in 0..POINTS {
             let gradients = &element.gradients[point];
-            let f = deformation(&nodes, gradients)?;
+            let (f, measure) = self.deformation(&nodes, gradients)?;
             let first = (index * POINTS + point) * branches;
             let past = &history.internal[first..first + branches];
-            let c = right_cauchy_green(&f);
-            let response = Response::at(&self.rubber, part_of(point), &c, past, &history.follows)
-                .ok_or(Inverted)?;
+            let response =
+                Response::at(&self.rubber, part_of(point), &measure, past, &history.follows)
+                    .ok_or(Inverted)?;
             sum.add(&f, gradients, element.weights[point], &response);
         }
         Ok(sum)
     }
 
     /// Keeps the state at the end of a step and returns the energy in J/m that it turned into heat:
-    /// `-∂ψ/∂C_i : dC_i` by the trapezoidal rule over the change of `C_i`. The power at the ends of
+    /// `-∂ψ/∂m_i : dm_i` by the trapezoidal rule over the change of `m_i`. The power at the ends of
     /// steps far longer than a relaxation time would say nothing about what happens in between.
     ///
     /// # Errors
@@ -127,23 +128,38 @@ impl TransientBlock {
             let nodes = self.gather(displacements, index);
             let element = &self.elements[index / self.mesh.columns];
             for (point, gradients) in element.gradients.iter().enumerate() {
-                let (part, weight) = (part_of(point), element.weights[point]);
-                let c = right_cauchy_green(&deformation(&nodes, gradients)?);
-                let old_c = std::mem::replace(&mut self.strains[index][point], c);
+                let weight = element.weights[point];
+                let strain = self.deformation(&nodes, gradients)?.1.value();
+                let old_strain = std::mem::replace(&mut self.strains[index][point], strain);
                 let first = (index * POINTS + point) * branches;
                 for (k, branch) in self.rubber.branches.iter().enumerate() {
                     let (past, follows) = (&history.internal[first + k], history.follows[k]);
-                    let c_i = [0, 1, 2].map(|i| past[i] + follows * c[i]);
-                    let old_c_i = std::mem::replace(&mut self.internal[first + k], c_i);
-                    let old = driving_force(&self.rubber, part, branch, &old_c, &old_c_i);
-                    let new = driving_force(&self.rubber, part, branch, &c, &c_i);
+                    let now = [0, 1, 2].map(|i| past[i] + follows * strain[i]);
+                    let before = std::mem::replace(&mut self.internal[first + k], now);
+                    let old = self.driving_force(point, branch, &old_strain, &before);
+                    let new = self.driving_force(point, branch, &strain, &now);
                     let force = [0, 1, 2].map(|i| 0.5 * (old[i] + new[i]));
-                    let flow = [0, 1, 2].map(|i| c_i[i] - old_c_i[i]);
+                    let flow = [0, 1, 2].map(|i| now[i] - before[i]);
                     heat += weight * contract(&force, &flow);
                 }
             }
         }
         Ok(heat)
+    }
+
+    /// The part of the force on the flow of a branch that a point stands for.
+    fn driving_force(
+        &self,
+        point: usize,
+        branch: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+    ) -> Symmetric {
+        let [shear, volumetric] = self.rubber.driving_force(branch, strain, internal);
+        match part_of(point) {
+            Part::Shear => shear,
+            Part::Volumetric => volumetric,
+        }
     }
 
     /// Energy in J/m stored in the springs, in the state kept last.
@@ -153,7 +169,7 @@ impl TransientBlock {
         let mut sum = 0.0;
         for (index, strains) in self.strains.iter().enumerate() {
             let weights = &self.elements[index / self.mesh.columns].weights;
-            for (point, (c, weight)) in strains.iter().zip(weights).enumerate() {
+            for (point, (strain, weight)) in strains.iter().zip(weights).enumerate() {
                 // A spring without one of its moduli has the energy of the other part.
                 let only = |spring: &Spring| match part_of(point) {
                     Part::Shear => Spring { volumetric: 0.0, ..*spring },
@@ -161,9 +177,9 @@ impl TransientBlock {
                 };
                 let first = (index * POINTS + point) * branches;
                 let internal = &self.internal[first..first + branches];
-                sum += weight * rubber.energy(&only(&rubber.equilibrium), c, &IDENTITY);
-                for (branch, c_i) in rubber.branches.iter().zip(internal) {
-                    sum += weight * rubber.energy(&only(branch), c, c_i);
+                sum += weight * rubber.energy(&only(&rubber.equilibrium), strain, &[0.0; 3]);
+                for (branch, internal) in rubber.branches.iter().zip(internal) {
+                    sum += weight * rubber.energy(&only(branch), strain, internal);
                 }
             }
         }
@@ -184,6 +200,31 @@ impl TransientBlock {
         places
     }
 
+    /// Deformation gradient from the displacements of the nodes, and the strain.
+    fn deformation(
+        &self,
+        nodes: &[f64; 8],
+        gradients: &[[f64; 2]; 4],
+    ) -> Result<(Tensor, Measure), Inverted> {
+        let mut h = [0.0; 4];
+        for (node, gradient) in gradients.iter().enumerate() {
+            let (x, z) = (nodes[2 * node], nodes[2 * node + 1]);
+            h[0] += x * gradient[0];
+            h[1] += x * gradient[1];
+            h[2] += z * gradient[0];
+            h[3] += z * gradient[1];
+        }
+        let strain = green_strain(&h);
+        let f = [1.0 + h[0], h[1], h[2], 1.0 + h[3]];
+        // A line without area would already make the inverse strain infinite.
+        if dilatation(&strain) > -1.0 && f[0] * f[3] - f[1] * f[2] > 0.0 {
+            let measure = self.rubber.rheology.measure(&strain).ok_or(Inverted)?;
+            Ok((f, measure))
+        } else {
+            Err(Inverted)
+        }
+    }
+
     fn gather(&self, displacements: &[f64], index: usize) -> [f64; 8] {
         self.places(index).map(|place| displacements[place])
     }
@@ -192,7 +233,7 @@ impl TransientBlock {
 impl Linearised {
     fn add(&mut self, f: &Tensor, gradients: &[[f64; 2]; 4], weight: f64, response: &Response) {
         let changes: [Symmetric; 8] =
-            std::array::from_fn(|i| strain_change(f, &gradients[i / 2], i % 2));
+            std::array::from_fn(|i| nodal_strain_change(f, &gradients[i / 2], i % 2));
         let stress = &response.stress;
         for (i, change) in changes.iter().enumerate() {
             // The forces do the work S : δC / 2.
@@ -221,22 +262,4 @@ impl Linearised {
 /// The part of stress and energy that a point stands for.
 fn part_of(point: usize) -> Part {
     if point == CENTRE { Part::Volumetric } else { Part::Shear }
-}
-
-/// Deformation gradient from the displacements of the nodes.
-fn deformation(nodes: &[f64; 8], gradients: &[[f64; 2]; 4]) -> Result<Tensor, Inverted> {
-    let mut f = [1.0, 0.0, 0.0, 1.0];
-    for (node, gradient) in gradients.iter().enumerate() {
-        let (x, z) = (nodes[2 * node], nodes[2 * node + 1]);
-        f[0] += x * gradient[0];
-        f[1] += x * gradient[1];
-        f[2] += z * gradient[0];
-        f[3] += z * gradient[1];
-    }
-    // A line without area would already make the inverse strain infinite.
-    if determinant(&right_cauchy_green(&f)) > 0.0 && f[0] * f[3] - f[1] * f[2] > 0.0 {
-        Ok(f)
-    } else {
-        Err(Inverted)
-    }
 }

@@ -2,11 +2,12 @@
 
 use crate::rubber::finite_strain::Symmetric;
 
-/// How `dC_i/dt = (C - C_i) / τ` is integrated over a step.
+/// How `dm_i/dt = (m - m_i) / τ` is integrated over a step, with m the strain in the measure of
+/// the law and `m_i` the internal tensor of a branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FlowRule {
     /// The trapezoidal rule (thesis 2.2.25), of second order:
-    /// `C_i' = ((2 τ - Δt) C_i + Δt (C + C')) / (2 τ + Δt)`. For `Δt` well above `τ` it rings:
+    /// `m_i' = ((2 τ - Δt) m_i + Δt (m + m')) / (2 τ + Δt)`. For `Δt` well above `τ` it rings:
     /// a deviation changes sign at every step and hardly decays.
     #[default]
     Trapezoidal,
@@ -15,7 +16,7 @@ pub enum FlowRule {
     Exponential,
 }
 
-/// Weights of one branch in one step: `C_i' = old_internal C_i + old_strain C + strain C'`. They
+/// Weights of one branch in one step: `m_i' = old_internal m_i + old_strain m + strain m'`. They
 /// add up to one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowStep {

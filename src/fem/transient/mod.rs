@@ -16,9 +16,9 @@
 //! branches dissipate. Both tend to the same friction; their difference measures the error.
 //!
 //! # The linear law
-//! Under [`Rheology::Linear`](crate::rubber::Rheology::Linear) a relaxed bar in compression carries
-//! `E_inf / (3 sqrt(3))` at most, whatever the mesh: elements under higher peaks of pressure
-//! collapse, and the run ends with [`TransientError::Stopped`].
+//! Under [`Rheology::Linear`](crate::rubber::Rheology::Linear) the shear stress has a maximum, at a
+//! logarithmic stretch of 1.2 in a relaxed, incompressible rubber: elements sheared beyond it give
+//! way, and the run ends with [`TransientError::Stopped`].
 
 mod block;
 mod contact;

@@ -1,12 +1,9 @@
 //! The law at one integration point with the memory of one step.
 
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Rheology, Spring, Symmetric, contract, determinant, inverse,
+    FiniteStrainRubber, Measure, Rheology, Symmetric, contract, determinant, inverse, one_plus,
     sandwich,
 };
-
-/// A tensor in the plane: components xx, xz, zx, zz.
-pub type Tensor = [f64; 4];
 
 /// The part of the stress that a point contributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,31 +29,36 @@ const UNITS: [Symmetric; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]
 impl Response {
     const ZERO: Self = Self { stress: [0.0; 3], moduli: [[0.0; 3]; 3] };
 
-    /// The response at the strain `c` if the internal tensor of branch k is
-    /// `history[k] + follows[k] C`; none where the law takes the inverse of an internal tensor
-    /// that is not positive.
+    /// The response at the strain `m` in the measure of the law if the internal tensor of branch
+    /// k is `history[k] + follows[k] m`; none where the law takes the inverse of an internal
+    /// tensor that is not positive.
     pub fn at(
         rubber: &FiniteStrainRubber,
         part: Part,
-        c: &Symmetric,
+        measure: &Measure,
         history: &[Symmetric],
         follows: &[f64],
     ) -> Option<Self> {
         let mut response = Self::ZERO;
-        let relaxed = [IDENTITY];
+        let strain = &measure.value();
+        let relaxed = [[0.0; 3]];
         let springs = std::iter::once(&rubber.equilibrium).chain(&rubber.branches);
         let memory = relaxed.iter().zip(&[0.0]).chain(history.iter().zip(follows));
-        let c_inverse = inverse(c);
+        let c = one_plus(strain);
+        let c_inverse = inverse(&c);
         for (spring, (history, follows)) in springs.zip(memory) {
-            let c_i = [0, 1, 2].map(|i| history[i] + follows * c[i]);
+            let internal = [0, 1, 2].map(|i| history[i] + follows * strain[i]);
+            let c_i = one_plus(&internal);
             let positive = determinant(&c_i) > 0.0 && c_i[0] > 0.0;
             if rubber.rheology == Rheology::NeoHookean && !positive {
                 return None;
             }
-            let state = State { c, c_inverse: &c_inverse, c_i: &c_i, follows: *follows };
+            let state = State { c: &c, c_inverse: &c_inverse, c_i: &c_i, follows: *follows };
             let (stress, modulus) = match part {
-                Part::Shear => (rubber.shear_stress(spring, c, &c_i), spring.shear),
-                Part::Volumetric => (rubber.volumetric_stress(spring, c, &c_i), spring.volumetric),
+                Part::Shear => (rubber.shear_stress(spring, strain, &internal), spring.shear),
+                Part::Volumetric => {
+                    (rubber.volumetric_stress(spring, strain, &internal), spring.volumetric)
+                }
             };
             (0..3).for_each(|i| response.stress[i] += stress[i]);
             match (rubber.rheology, part) {
@@ -77,7 +79,19 @@ impl Response {
                 }
             }
         }
-        Some(response)
+        Some(response.of_strain(measure))
+    }
+
+    /// Stress and moduli by `C` from those conjugate to the measure.
+    fn of_strain(self, measure: &Measure) -> Self {
+        let mut response = Self { stress: measure.derivative(&self.stress), ..Self::ZERO };
+        for (j, unit) in UNITS.iter().enumerate() {
+            let change = measure.derivative(unit);
+            let conjugate = self.moduli.map(|row| (0..3).map(|k| row[k] * change[k]).sum());
+            let stress = measure.stress_change(&self.stress, &conjugate, unit);
+            (0..3).for_each(|i| response.moduli[i][j] = stress[i]);
+        }
+        response
     }
 
     /// `δS = μ (C⁻¹ δC C⁻¹ - C_i⁻¹ δC_i C_i⁻¹)`.
@@ -108,77 +122,10 @@ impl Response {
     }
 }
 
-/// The force `-∂ψ/∂C_i` in Pa that drives the flow of a branch.
-pub fn driving_force(
-    rubber: &FiniteStrainRubber,
-    part: Part,
-    branch: &Spring,
-    c: &Symmetric,
-    c_i: &Symmetric,
-) -> Symmetric {
-    let g = inverse(c_i);
-    let strain = [0, 1, 2].map(|i| 0.5 * (c[i] - c_i[i]));
-    match (rubber.rheology, part) {
-        (Rheology::NeoHookean, Part::Shear) => {
-            let pulled = sandwich(&g, c);
-            [0, 1, 2].map(|i| 0.5 * branch.shear * (pulled[i] - g[i]))
-        }
-        (Rheology::NeoHookean, Part::Volumetric) => {
-            let volume = determinant(c) / determinant(c_i);
-            g.map(|g| 0.25 * branch.volumetric * (volume - 1.0) * g)
-        }
-        (Rheology::Linear, Part::Shear) => strain.map(|e| branch.shear * e),
-        (Rheology::Linear, Part::Volumetric) => {
-            let trace = contract(&IDENTITY, &strain);
-            IDENTITY.map(|unit| 0.5 * branch.volumetric * trace * unit)
-        }
-    }
-}
-
-/// Strains of one spring.
+/// Tensors of one spring under neo-Hooke.
 struct State<'a> {
     c: &'a Symmetric,
     c_inverse: &'a Symmetric,
     c_i: &'a Symmetric,
     follows: f64,
-}
-
-/// `C = Fᵀ F`.
-#[inline]
-pub fn right_cauchy_green(f: &Tensor) -> Symmetric {
-    [f[0] * f[0] + f[2] * f[2], f[1] * f[1] + f[3] * f[3], f[0] * f[1] + f[2] * f[3]]
-}
-
-/// Change of `C` when a node moves along x (0) or z (1) by one; `gradient` is that of its shape
-/// function.
-#[inline]
-pub fn strain_change(f: &Tensor, gradient: &[f64; 2], direction: usize) -> Symmetric {
-    let row = [f[2 * direction], f[2 * direction + 1]];
-    [
-        2.0 * row[0] * gradient[0],
-        2.0 * row[1] * gradient[1],
-        row[0] * gradient[1] + row[1] * gradient[0],
-    ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rubber::Rubber;
-    use approx::assert_relative_eq;
-
-    #[test]
-    fn the_power_of_the_driving_force_is_the_dissipation() {
-        let (c, c_i) = ([1.3, 0.8, 0.2], [1.1, 0.9, -0.1]);
-        for rheology in [Rheology::NeoHookean, Rheology::Linear] {
-            let rubber = FiniteStrainRubber::new(&Rubber::table_2_1(), rheology).unwrap();
-            for branch in &rubber.branches {
-                let flow = [0, 1, 2].map(|i| (c[i] - c_i[i]) / branch.relaxation_time);
-                let power = |part| contract(&driving_force(&rubber, part, branch, &c, &c_i), &flow);
-                let (shear, volumetric) = rubber.dissipation(branch, &c, &c_i);
-                assert_relative_eq!(power(Part::Shear), shear, max_relative = 1e-13);
-                assert_relative_eq!(power(Part::Volumetric), volumetric, max_relative = 1e-13);
-            }
-        }
-    }
 }

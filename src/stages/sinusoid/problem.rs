@@ -14,7 +14,7 @@ use serde_json::json;
 
 /// Revision of the contact solvers: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 2;
+const SOLVER_REVISION: u32 = 3;
 
 /// A contact model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ const SOLVER_REVISION: u32 = 2;
 pub enum Model {
     /// Linear viscoelastic half-space (VHS).
     HalfSpace,
-    /// Linear viscoelastic stress with finite kinematics.
+    /// Linear viscoelastic stress in the logarithmic strain.
     Linear,
     /// Neo-Hooke in finite viscoelasticity.
     NeoHookean,

@@ -14,8 +14,8 @@ pub struct PointRow {
     /// Root mean square slope √2 π D/L.
     #[schemars(extend("unit" = "1"))]
     pub rms_slope: f64,
-    /// Model: `half-space` (linear viscoelastic half-space), `linear` (linear stress, finite
-    /// kinematics), `neo-hookean` (finite viscoelasticity).
+    /// Model: `half-space` (linear viscoelastic half-space), `linear` (stress linear in the
+    /// logarithmic strain), `neo-hookean` (finite viscoelasticity).
     pub model: String,
     /// Sliding speed v.
     #[schemars(extend("unit" = "mm/s"))]

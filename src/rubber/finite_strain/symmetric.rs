@@ -1,0 +1,47 @@
+//! Symmetric tensors in the plane.
+
+/// A symmetric tensor in the plane: components xx, zz, xz.
+pub type Symmetric = [f64; 3];
+
+/// The unit tensor.
+pub const IDENTITY: Symmetric = [1.0, 1.0, 0.0];
+
+/// Determinant.
+pub fn determinant(a: &Symmetric) -> f64 {
+    a[0] * a[1] - a[2] * a[2]
+}
+
+/// Inverse; infinite or NaN for a singular tensor.
+pub fn inverse(a: &Symmetric) -> Symmetric {
+    let d = determinant(a);
+    [a[1] / d, a[0] / d, -a[2] / d]
+}
+
+/// `det(1 + a) - 1`, accurate for a small tensor.
+pub fn dilatation(a: &Symmetric) -> f64 {
+    a[0] + a[1] + determinant(a)
+}
+
+/// `det(1 + a) - det(1 + b)`, accurate for small tensors.
+pub fn dilatation_difference(a: &Symmetric, b: &Symmetric) -> f64 {
+    (a[0] - b[0]) + (a[1] - b[1]) + (determinant(a) - determinant(b))
+}
+
+/// `1 + a`.
+pub fn one_plus(a: &Symmetric) -> Symmetric {
+    [1.0 + a[0], 1.0 + a[1], a[2]]
+}
+
+/// Double contraction `a : b`.
+pub fn contract(a: &Symmetric, b: &Symmetric) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2]
+}
+
+/// The product `G X G` of two symmetric tensors, which is symmetric.
+#[inline]
+pub fn sandwich(g: &Symmetric, x: &Symmetric) -> Symmetric {
+    // Rows of G X first.
+    let (xx, xz) = (g[0] * x[0] + g[2] * x[2], g[0] * x[2] + g[2] * x[1]);
+    let (zx, zz) = (g[2] * x[0] + g[1] * x[2], g[2] * x[2] + g[1] * x[1]);
+    [xx * g[0] + xz * g[2], zx * g[2] + zz * g[1], xx * g[2] + xz * g[1]]
+}
