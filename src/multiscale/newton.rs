@@ -24,8 +24,8 @@ const MOST_ITERATIONS: usize = 60;
 const MOST_KRYLOV_ITERATIONS: usize = 150;
 /// Halvings of a step before the iteration is given up.
 const MOST_HALVINGS: usize = 10;
-/// A step may end above the residual before it by this factor, but not above the largest of the
-/// last few: where the law is hard, the best way passes a point that is worse.
+/// A step may end above the residual before it, but not above the largest of this many last ones:
+/// where the law is hard, the best way passes a point that is worse.
 const REMEMBERED: usize = 4;
 /// Relative tolerance of the last linear solves.
 const TIGHT: f64 = 1e-8;
@@ -95,17 +95,22 @@ impl Newton<'_> {
         let mut merits = vec![now.merit];
         let mut krylov_iterations = 0;
         let mut iterations = 0;
+        let mut tight = false;
         while now.residual > tolerance && iterations < MOST_ITERATIONS {
             iterations += 1;
-            let step = self.step(&now);
+            let step = self.step(&now, tight);
             krylov_iterations += step.krylov_iterations;
             let recent = &merits[merits.len().saturating_sub(REMEMBERED)..];
             let allowed = recent.iter().copied().fold(0.0_f64, f64::max);
-            let Some(next) = self.search(&now, &step, allowed) else {
-                break;
-            };
-            now = next;
-            merits.push(now.merit);
+            match self.search(&now, &step, allowed) {
+                Some(next) => {
+                    now = next;
+                    merits.push(now.merit);
+                }
+                // A step that leads nowhere may be one of a linear system solved too loosely.
+                None if !tight => tight = true,
+                None => break,
+            }
         }
         let converged = now.residual <= tolerance;
         *state = now.state;
@@ -182,7 +187,7 @@ impl Newton<'_> {
 
     /// Newton step: `(A + K) dp - da = -F` on the set with the sum of `dp` given, in the gaps
     /// `ds = da - F - A dp`.
-    fn step(&mut self, now: &Evaluation) -> Step {
+    fn step(&mut self, now: &Evaluation, tight: bool) -> Step {
         let n = self.heights.len();
         let set = contact_set(&now.state.line);
         if set.is_empty() {
@@ -205,8 +210,8 @@ impl Newton<'_> {
         }
         let mut correction = vec![0.0; set.len()];
         preconditioner.apply(&mut layered, &set, &r, &mut correction);
-        let loose = 1.0 / n as f64;
-        let relative = now.residual.clamp(TIGHT, loose.max(TIGHT));
+        let loose = now.residual.clamp(TIGHT, (1.0 / n as f64).max(TIGHT));
+        let relative = if tight { TIGHT } else { loose };
         let limits = KrylovLimits {
             tolerance: (relative * euclidean_norm(&correction))
                 .max(1e-15 * euclidean_norm(&pressure)),
