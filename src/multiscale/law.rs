@@ -21,9 +21,11 @@ pub enum LawEnd {
 /// in logarithms both are nearly straight lines of slope one, with a slow change over decades,
 /// and a linear law is exactly one. Measured on the wave 0.0625 mm / 0.01867 mm (rubber Table
 /// 2.1, 10 and 50 mm/s, full contact at 9.07 and 20.0 MPa), 32 samples at
-/// `p = p* (0.1 + 0.9 k/31)^4` meet the separation within 3e-5 and 6e-5 of the amplitude, 16
-/// within 4e-4; samples at logarithmic steps waste most of them near first touch and reach 7e-4
-/// with 32. The root of the pressure as abscissa is ten times worse. Below the first sample the law goes on as the line contact
+/// `p = p* (0.1 + 0.9 k/31)^4` meet the separation within 3e-5 of the amplitude, 16 within 4e-4;
+/// samples at logarithmic steps waste most of them near first touch and reach 5e-4 with 32.
+///
+/// Below the first sample the law goes on as the line contact (2 % of the first indentation off
+/// at most; straight in the root of the pressure it would be 8 %)
 /// with the value and the slope found there, `d = d_1 s (1 - (1 - m) ln s)` with `s = p / p_1`;
 /// a slope `m` above one, as of a lossy rubber that is stiffer on smaller spots, as the power
 /// `d_1 s^m`.
