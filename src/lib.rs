@@ -11,6 +11,7 @@
 //! | [`rubber`] | generalised Maxwell model and its file |
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
+//! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
 //! | [`scans`] | readers of instrument files: bytes in, scan or error out |
 //! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
@@ -31,6 +32,7 @@ pub mod artifact;
 pub mod cli;
 pub mod contact;
 pub mod fem;
+pub mod multiscale;
 pub mod numerics;
 pub mod pipeline;
 pub mod recipe;

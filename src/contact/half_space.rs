@@ -94,13 +94,53 @@ impl HalfSpace {
     }
 
     /// [`Self::displacement`] from and to a subset of the points only.
-    pub(super) fn displacement_on(&mut self, set: &[u32], pressure: &[f64], out: &mut [f64]) {
+    pub(crate) fn displacement_on(&mut self, set: &[u32], pressure: &[f64], out: &mut [f64]) {
         self.restricted(set, pressure, out, Direction::PressureToDisplacement);
     }
 
     /// [`Self::pressure`] from and to a subset of the points only.
-    pub(super) fn pressure_on(&mut self, set: &[u32], displacement: &[f64], out: &mut [f64]) {
+    pub(crate) fn pressure_on(&mut self, set: &[u32], displacement: &[f64], out: &mut [f64]) {
         self.restricted(set, displacement, out, Direction::DisplacementToPressure);
+    }
+
+    /// Pressures on a set that make a displacement there of the half-space under a compliant
+    /// layer: at each point a `blend` of the filters `1 / (C(q) + k)` for two neighbouring layer
+    /// compliances `k` among `levels`, in m/Pa. The mean counts as a wave of one period.
+    pub(crate) fn layered_pressure_on(
+        &mut self,
+        set: &[u32],
+        displacement: &[f64],
+        levels: &[f64],
+        blend: &[(usize, f64)],
+        out: &mut [f64],
+    ) {
+        self.real.fill(0.0);
+        for (i, x) in set.iter().zip(displacement) {
+            self.real[*i as usize] = *x;
+        }
+        self.forward_in_place();
+        let spectrum = self.spectrum.clone();
+        out.fill(0.0);
+        let norm = 1.0 / self.points as f64;
+        for (level, k) in levels.iter().enumerate() {
+            for (bin, (y, x)) in self.spectrum.iter_mut().zip(&spectrum).enumerate() {
+                *y = x * norm / (self.compliance[bin.max(1)] + k);
+            }
+            self.backward_in_place();
+            for ((i, (lower, share)), y) in set.iter().zip(blend).zip(out.iter_mut()) {
+                let weight = match level {
+                    _ if level == *lower => 1.0 - share,
+                    _ if level == lower + 1 => *share,
+                    _ => continue,
+                };
+                *y += weight * self.real[*i as usize];
+            }
+        }
+    }
+
+    /// Compliances `|C(q)|` in m/Pa of the longest and of the shortest wave of the grid.
+    pub(crate) fn compliance_range(&self) -> (f64, f64) {
+        (self.compliance[1].norm(), self.compliance[self.compliance.len() - 1].norm())
     }
 
     /// Mean of `f g'` over one period, with the exact derivative of the trigonometric interpolant.

@@ -27,7 +27,7 @@ mod active_set;
 mod edges;
 mod error;
 mod islands;
-mod preconditioner;
+pub(crate) mod preconditioner;
 
 pub use curve::{CurvePoint, CurveValue, friction_curve};
 pub use error::ContactError;

@@ -9,6 +9,41 @@ use faer::{Mat, MatMut};
 /// one transform of the grids on which so many islands occur.
 const MOST_ISLANDS: usize = 256;
 
+/// What the preconditioner needs of an operator from pressures to displacements on a set.
+pub(crate) trait SetOperator {
+    /// Number of grid points.
+    fn points(&self) -> usize;
+    /// Displacements on the set under pressures on it.
+    fn displacement_on(&mut self, set: &[u32], pressure: &[f64], out: &mut [f64]);
+    /// Pressures that make the displacements, by an inverse that is good within an island.
+    fn pressure_on(&mut self, set: &[u32], displacement: &[f64], out: &mut [f64]);
+    /// Pressures under a flat punch on the set, to any scale.
+    fn punch_on(&mut self, set: &[u32], out: &mut [f64]);
+}
+
+impl SetOperator for HalfSpace {
+    fn points(&self) -> usize {
+        self.points()
+    }
+
+    fn displacement_on(&mut self, set: &[u32], pressure: &[f64], out: &mut [f64]) {
+        self.displacement_on(set, pressure, out);
+    }
+
+    fn pressure_on(&mut self, set: &[u32], displacement: &[f64], out: &mut [f64]) {
+        self.pressure_on(set, displacement, out);
+    }
+
+    fn punch_on(&mut self, set: &[u32], out: &mut [f64]) {
+        // Without a gap the pressures of a uniform displacement are round-off.
+        if set.len() == self.points() {
+            out.fill(1.0);
+        } else {
+            self.pressure_on(set, &vec![1.0; set.len()], out);
+        }
+    }
+}
+
 /// Approximates the pressures on the contact set that give a displacement there at unchanged
 /// load: the solution of `[A e; e^T 0] [t; ubar] = [r; 0]` with `A` the half-space operator
 /// restricted to the set.
@@ -18,7 +53,7 @@ const MOST_ISLANDS: usize = 256;
 /// holds the free surface in the gaps still: there the displacement of each island is reduced to
 /// one number, and the forces between islands come from a small dense system in which islands act
 /// on each other as point forces.
-pub(super) struct Preconditioner {
+pub(crate) struct Preconditioner {
     islands: Islands,
     /// Pressure under a flat punch on each island, with unit sum.
     shape: Vec<f64>,
@@ -33,19 +68,18 @@ struct Coarse {
 impl Preconditioner {
     /// Preconditioner for a nonempty contact set; `kernel` is the displacement by a unit pressure
     /// at point 0.
-    pub fn new(space: &mut HalfSpace, kernel: &[f64], set: &[u32]) -> Self {
+    pub fn new(space: &mut impl SetOperator, kernel: &[f64], set: &[u32]) -> Self {
         let points = space.points();
         let islands = Islands::of(set, points, MOST_ISLANDS);
         let mut shape = vec![0.0; set.len()];
-        space.pressure_on(set, &vec![1.0; set.len()], &mut shape);
-        // The gaps make the edges of an island stiff, so the sum is positive. Without a gap it is
-        // round-off, and merging may break it: there a uniform pressure serves.
-        let full = set.len() == points;
+        space.punch_on(set, &mut shape);
+        // The gaps make the edges of an island stiff, so the sum is positive. Merging may break
+        // it: there a uniform pressure serves.
         let sums = islands.sums(shape.iter().copied());
         let counts = islands.sums(std::iter::repeat_n(1.0, set.len()));
         for (s, id) in shape.iter_mut().zip(&islands.of_point) {
             let id = *id as usize;
-            *s = if sums[id] > 0.0 && !full { *s / sums[id] } else { 1.0 / counts[id] };
+            *s = if sums[id] > 0.0 { *s / sums[id] } else { 1.0 / counts[id] };
         }
         let coarse = (islands.count > 1).then(|| Coarse::new(space, kernel, set, &islands, &shape));
         Self { islands, shape, coarse }
@@ -67,7 +101,13 @@ impl Preconditioner {
     }
 
     /// Pressures (sum zero) for the displacements `r` on the set.
-    pub fn apply(&self, space: &mut HalfSpace, set: &[u32], r: &[f64], pressure: &mut [f64]) {
+    pub fn apply(
+        &self,
+        space: &mut impl SetOperator,
+        set: &[u32],
+        r: &[f64],
+        pressure: &mut [f64],
+    ) {
         let means = self.islands.sums(r.iter().zip(&self.shape).map(|(r, s)| r * s));
         let local: Vec<f64> =
             r.iter().zip(&self.islands.of_point).map(|(r, id)| r - means[*id as usize]).collect();
@@ -92,7 +132,7 @@ impl Preconditioner {
 
 impl Coarse {
     fn new(
-        space: &mut HalfSpace,
+        space: &mut impl SetOperator,
         kernel: &[f64],
         set: &[u32],
         islands: &Islands,

@@ -12,10 +12,10 @@ use realfft::RealFftPlanner;
 pub const RESIDUAL_TOLERANCE: f64 = 1e-10;
 
 /// The iteration aims lower, so that what is reported stays below [`RESIDUAL_TOLERANCE`].
-const INNER_TOLERANCE: f64 = 2e-11;
+pub(crate) const INNER_TOLERANCE: f64 = 2e-11;
 
 /// Grids are halved down to about this many points.
-const COARSEST_POINTS: usize = 64;
+pub(crate) const COARSEST_POINTS: usize = 64;
 
 /// The grids on which the contact can be asked for, and the rubber it is asked for.
 pub const POINTS_RANGE: std::ops::RangeInclusive<usize> = 8..=1 << 24;
@@ -217,7 +217,12 @@ impl Grid {
     }
 }
 
-fn check(rubber: &Rubber, speed: f64, period: f64, heights: &[f64]) -> Result<(), ContactError> {
+pub(crate) fn check(
+    rubber: &Rubber,
+    speed: f64,
+    period: f64,
+    heights: &[f64],
+) -> Result<(), ContactError> {
     let out_of_range =
         |quantity, value, range| Err(ContactError::OutOfRange { quantity, value, range });
     if let Err(error) = rubber.validate() {
@@ -240,7 +245,7 @@ fn check(rubber: &Rubber, speed: f64, period: f64, heights: &[f64]) -> Result<()
 
 /// Heights about their mean. One height is taken off first, so that a flat profile becomes zero
 /// and not the round-off of its mean.
-fn remove_mean(heights: &[f64]) -> Vec<f64> {
+pub(crate) fn remove_mean(heights: &[f64]) -> Vec<f64> {
     let first = heights[0];
     let mean = heights.iter().map(|z| z - first).sum::<f64>() / heights.len() as f64;
     heights.iter().map(|z| z - first - mean).collect()
@@ -248,7 +253,7 @@ fn remove_mean(heights: &[f64]) -> Vec<f64> {
 
 /// The profile on half as many points: every second one of an even grid, between two points of an
 /// odd one.
-fn coarsen(heights: &[f64]) -> Vec<f64> {
+pub(crate) fn coarsen(heights: &[f64]) -> Vec<f64> {
     resample(heights, heights.len() / 2)
 }
 
@@ -277,7 +282,8 @@ fn refine(pressure: &[f64], edges: &EdgeReader, points: usize) -> Vec<f64> {
     fine
 }
 
-fn resample(values: &[f64], points: usize) -> Vec<f64> {
+/// Values on another number of points of the same period, linear between points.
+pub(crate) fn resample(values: &[f64], points: usize) -> Vec<f64> {
     let n = values.len();
     (0..points)
         .map(|i| {

@@ -34,7 +34,7 @@ pub struct ContactSolution {
 
 /// Root mean square displacement, the scale of violated gaps; not below 1e-4 of that of the
 /// heights, since their round-off keeps a gap from being any smaller than 1e-15 of them.
-pub(super) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
+pub(crate) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
     let root_mean_square = |x: &[f64]| euclidean_norm(x) / (x.len() as f64).sqrt();
     let height = root_mean_square(heights);
     // On a flat profile displacements are round-off.
