@@ -8,7 +8,8 @@ use crate::recipe::{Chain, Recipe, Violation, Work};
 use crate::rubber::Rubber;
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Context, Stage, StageError, approximate, bem, characterise, ingest, realise, sinusoid, tables,
+    Context, Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro,
+    realise, sinusoid, tables,
 };
 use serde_json::{Value, json};
 use std::path::Path;
@@ -126,7 +127,7 @@ pub fn run(
     let plan = Plan::new(recipe)?;
     plan.check(selection)?;
     let folder = RunFolder::open(out)?;
-    for &stage in plan.stages() {
+    for stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
         let identity = plan.identity(stage, &folder)?;
         let state = state(stage, &identity, &folder)?;
@@ -168,7 +169,7 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
     let view = RunView::of(out);
     let plan = Plan::new(recipe)?;
     let mut states: Vec<(Stage, State)> = Vec::new();
-    for &stage in plan.stages() {
+    for stage in plan.stages() {
         let before = states.iter().find(|(_, state)| *state != State::Fresh);
         let state = match before {
             // What a stage would read is not known before those it reads from are up to date.
@@ -211,12 +212,15 @@ impl<'a> Plan<'a> {
     }
 
     /// The stages of the recipe; a chain that states its waves needs no scans.
-    fn stages(&self) -> &'static [Stage] {
-        match self.work {
-            Work::Chain(Chain { ingest: Some(_), .. }) => &Stage::CHAIN,
-            Work::Chain(_) => &Stage::CHAIN[2..],
-            Work::Sinusoid(_) => &[Stage::Sinusoid],
-        }
+    fn stages(&self) -> Vec<Stage> {
+        let Work::Chain(chain) = self.work else { return vec![Stage::Sinusoid] };
+        let has = |stage: &Stage| match stage {
+            Stage::Ingest | Stage::Characterise => chain.ingest.is_some(),
+            Stage::Micro | Stage::Hybrid => chain.micro.is_some(),
+            Stage::Fem => chain.fem.is_some(),
+            _ => true,
+        };
+        Stage::CHAIN.into_iter().filter(has).collect()
     }
 
     /// Fails for a selected stage that the recipe does not have.
@@ -289,8 +293,40 @@ impl<'a> Plan<'a> {
                 chain.bem.resolved(&self.rubber),
                 from(Stage::Realise, realise::SURFACES_FILE)?,
             ),
+            Stage::Micro => {
+                let mut inputs = from(Stage::Realise, realise::SURFACES_FILE)?;
+                inputs.extend(from(Stage::Bem, bem::CURVES_FILE)?);
+                let parameters = json!({ "micro": chain.micro, "rubber": self.rubber });
+                (micro::REVISION, micro::schemas(), parameters, inputs)
+            }
+            Stage::Hybrid => {
+                let mut inputs = from(Stage::Realise, realise::SURFACES_FILE)?;
+                inputs.extend(from(Stage::Bem, bem::CURVES_FILE)?);
+                inputs.extend(from(Stage::Micro, micro::SAMPLES_FILE)?);
+                inputs.extend(from(Stage::Micro, micro::LAW_FILE)?);
+                let parameters =
+                    json!({ "hybrid": chain.hybrid, "micro": chain.micro, "rubber": self.rubber });
+                (hybrid::REVISION, hybrid::schemas(), parameters, inputs)
+            }
+            Stage::Fem => {
+                let mut inputs = from(Stage::Realise, realise::SURFACES_FILE)?;
+                inputs.extend(from(Stage::Bem, bem::CURVES_FILE)?);
+                let parameters = json!({
+                    "fem": chain.fem,
+                    "rubber": self.rubber,
+                    "speeds_mm_s": chain.bem.speeds_mm_s,
+                    "area_fractions": chain.bem.area_fractions,
+                });
+                (fem::REVISION, fem::schemas(), parameters, inputs)
+            }
             Stage::Tables => {
                 let mut inputs = from(Stage::Bem, bem::CURVES_FILE)?;
+                if chain.micro.is_some() {
+                    inputs.extend(from(Stage::Hybrid, hybrid::HYBRID_FILE)?);
+                }
+                if chain.fem.is_some() {
+                    inputs.extend(from(Stage::Fem, fem::FEM_FILE)?);
+                }
                 inputs.extend(self.published.iter().cloned());
                 (tables::REVISION, tables::schemas(), json!(chain.tables), inputs)
             }
@@ -324,7 +360,28 @@ fn compute(
         Stage::Bem => {
             bem::run(chain.bem, &plan.rubber, folder, &solve_store(folder, forced)?, context)
         }
-        Stage::Tables => tables::run(chain.tables, folder, context),
+        Stage::Micro => match chain.micro {
+            Some(micro) => {
+                let store = solve_store(folder, forced)?;
+                micro::run(micro, &plan.rubber, folder, &store, context)
+            }
+            None => Ok(Vec::new()),
+        },
+        Stage::Hybrid => match chain.micro {
+            Some(micro) => hybrid::run(&chain.hybrid, micro, &plan.rubber, folder, context),
+            None => Ok(Vec::new()),
+        },
+        Stage::Fem => match chain.fem {
+            Some(fem) => {
+                let store = solve_store(folder, forced)?;
+                fem::run(fem, chain.bem, &plan.rubber, folder, &store, context)
+            }
+            None => Ok(Vec::new()),
+        },
+        Stage::Tables => {
+            let with = tables::Models { hybrid: chain.micro.is_some(), fem: chain.fem.is_some() };
+            tables::run(chain.tables, with, folder, context)
+        }
         Stage::Sinusoid => unreachable!("no stage of the chain"),
     }
 }

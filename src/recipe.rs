@@ -2,8 +2,8 @@
 
 use crate::scans::ScanProblem;
 use crate::stages::{
-    approximate::Approximate, bem::Bem, characterise::Characterise, ingest::Ingest,
-    realise::Realise, sinusoid::Sinusoid, tables::Tables,
+    approximate::Approximate, bem::Bem, characterise::Characterise, fem::Fem, hybrid::Hybrid,
+    ingest::Ingest, micro::Micro, realise::Realise, sinusoid::Sinusoid, tables::Tables,
 };
 use crate::surface::ConditioningError;
 use schemars::JsonSchema;
@@ -34,6 +34,15 @@ pub struct Recipe {
     /// Sliding contact of the viscoelastic half-space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bem: Option<Bem>,
+    /// The steepest waves at finite deformation; with it, friction is corrected by them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub micro: Option<Micro>,
+    /// How friction is corrected; only with `[micro]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hybrid: Option<Hybrid>,
+    /// All waves at finite deformation, for small surfaces.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fem: Option<Fem>,
     /// Averaged friction tables.
     #[serde(default)]
     pub tables: Tables,
@@ -64,6 +73,12 @@ pub struct Chain<'a> {
     pub realise: &'a Realise,
     /// Section `[bem]`.
     pub bem: &'a Bem,
+    /// Section `[micro]`, if friction is to be corrected.
+    pub micro: Option<&'a Micro>,
+    /// Section `[hybrid]`.
+    pub hybrid: Hybrid,
+    /// Section `[fem]`, if all waves are to be solved at finite deformation.
+    pub fem: Option<&'a Fem>,
     /// Section `[tables]`.
     pub tables: &'a Tables,
 }
@@ -124,6 +139,11 @@ pub enum Violation {
         /// Its name.
         section: &'static str,
     },
+    /// A correction without the microscale that it is made of.
+    #[error(
+        "section [hybrid] without [micro]: the correction is made of the microscale; add [micro]"
+    )]
+    HybridWithoutMicro,
     /// The description of the scan files.
     #[error("[ingest.text]: {0}")]
     Text(#[from] ScanProblem),
@@ -196,6 +216,9 @@ impl Recipe {
             ("approximate", self.approximate.is_some()),
             ("realise", self.realise.is_some()),
             ("bem", self.bem.is_some()),
+            ("micro", self.micro.is_some()),
+            ("hybrid", self.hybrid.is_some()),
+            ("fem", self.fem.is_some()),
             ("tables", self.tables != Tables::default()),
         ];
         match others.into_iter().find(|(_, present)| *present) {
@@ -206,12 +229,18 @@ impl Recipe {
 
     fn chain(&self) -> Result<Chain<'_>, Violation> {
         let missing = |section| Violation::MissingSection { section };
+        if self.hybrid.is_some() && self.micro.is_none() {
+            return Err(Violation::HybridWithoutMicro);
+        }
         Ok(Chain {
             ingest: self.ingest.as_ref(),
             characterise: &self.characterise,
             approximate: self.approximate.as_ref().ok_or(missing("approximate"))?,
             realise: self.realise.as_ref().ok_or(missing("realise"))?,
             bem: self.bem.as_ref().ok_or(missing("bem"))?,
+            micro: self.micro.as_ref(),
+            hybrid: self.hybrid.unwrap_or_default(),
+            fem: self.fem.as_ref(),
             tables: &self.tables,
         })
     }
@@ -231,6 +260,8 @@ impl Chain<'_> {
         self.approximate.check()?;
         self.realise.check()?;
         self.bem.check()?;
+        self.micro.map_or(Ok(()), Micro::check)?;
+        self.fem.map_or(Ok(()), Fem::check)?;
         let (scans, given) = (self.ingest.is_some(), !self.approximate.given.is_empty());
         demand(
             scans != given && (!given || self.approximate.waves.is_empty()),

@@ -115,6 +115,11 @@ impl SlidingContact {
         self.height_range
     }
 
+    /// The smallest mean pressure in Pa of full contact: nowhere is its pressure a tension then.
+    pub fn full_contact_limit(&mut self) -> f64 {
+        -self.full_contact_pressure().into_iter().fold(0.0_f64, f64::min)
+    }
+
     /// In full contact the pressure follows from the heights at once; it is the solution if it is
     /// nowhere a tension.
     pub(super) fn full_contact(&mut self, mean_pressure: f64) -> Option<ContactSolution> {

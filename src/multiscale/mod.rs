@@ -11,13 +11,19 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | [`scales`] | which waves are the microscale |
+//! | [`sampling`] | how densely the microscale must be sampled |
 //! | [`law`] | the local law between samples, and what it refuses |
+//! | [`correction`] | what the microscale changes of friction and area |
 //! | [`soft`] | nested grids from coarse to fine: the solver that users call |
 //! | [`solution`] | local pressures, gaps, friction and residual of a solved contact |
 //! | `newton` | pressures and mean separation on one grid |
 //! | `layer` | the linear operator of a Newton step and its approximate inverse |
 
+pub mod correction;
 pub mod law;
+pub mod sampling;
+pub mod scales;
 pub mod soft;
 pub mod solution;
 

@@ -7,12 +7,18 @@
 //! | [`approximate`] | correlation | amplitudes of superposed sines |
 //! | [`realise`] | amplitudes | waves with random phases |
 //! | [`bem`] | waves, rubber | solved contacts, friction over area |
+//! | [`micro`] | waves, friction over area, rubber | the steepest waves under both models, their local law |
+//! | [`hybrid`] | waves, friction over area, microscale | friction over area, corrected |
+//! | [`fem`] | waves, rubber | friction over area with all waves at finite deformation |
 //! | [`tables`] | friction over area | averages with confidence intervals |
 
 pub mod approximate;
 pub mod bem;
 pub mod characterise;
+pub mod fem;
+pub mod hybrid;
 pub mod ingest;
+pub mod micro;
 pub mod realise;
 pub mod sinusoid;
 pub mod tables;
@@ -38,6 +44,12 @@ pub enum Stage {
     Realise,
     /// Sliding contact of the half-space.
     Bem,
+    /// The steepest waves at finite deformation.
+    Micro,
+    /// Friction of the half-space corrected by the microscale.
+    Hybrid,
+    /// All waves at finite deformation.
+    Fem,
     /// Averaged friction tables.
     Tables,
     /// Three models on one sine; no part of the chain.
@@ -46,12 +58,15 @@ pub enum Stage {
 
 impl Stage {
     /// The stages from scans to tables in the order of the data.
-    pub const CHAIN: [Self; 6] = [
+    pub const CHAIN: [Self; 9] = [
         Self::Ingest,
         Self::Characterise,
         Self::Approximate,
         Self::Realise,
         Self::Bem,
+        Self::Micro,
+        Self::Hybrid,
+        Self::Fem,
         Self::Tables,
     ];
 
@@ -63,6 +78,9 @@ impl Stage {
             Self::Approximate => "approximate",
             Self::Realise => "realise",
             Self::Bem => "bem",
+            Self::Micro => "micro",
+            Self::Hybrid => "hybrid",
+            Self::Fem => "fem",
             Self::Tables => "tables",
             Self::Sinusoid => "sinusoid",
         }
@@ -218,6 +236,38 @@ pub enum StageError {
         /// Why.
         source: Box<crate::contact::curve::CurveError<SolveError>>,
     },
+    /// A surface whose waves are all steeper than the threshold.
+    #[error(
+        "all of the {waves} waves are steeper than {threshold}: nothing is left for the macro surface; raise micro.rms_slope_threshold"
+    )]
+    NoMacroscale {
+        /// Number of waves.
+        waves: u32,
+        /// The threshold.
+        threshold: f64,
+    },
+    /// A contact of the microscale, or of the macro surface under its law.
+    #[error("microscale of {waves} waves, {speed_mm_s} mm/s: {source}")]
+    Microscale {
+        /// Number of waves.
+        waves: u32,
+        /// Speed in mm/s.
+        speed_mm_s: f64,
+        /// Why.
+        source: Box<SolveError>,
+    },
+    /// A surface with all waves at finite deformation.
+    #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}")]
+    FiniteDeformation {
+        /// Number of waves.
+        waves: u32,
+        /// Realisation.
+        realisation: u32,
+        /// Speed in mm/s.
+        speed_mm_s: f64,
+        /// Why.
+        source: Box<SolveError>,
+    },
     /// A rubber that has no relaxation time to measure speeds by.
     #[error("rubber {rubber} has no branches: the Deborah number needs a relaxation time")]
     NoRelaxation {
@@ -254,6 +304,12 @@ pub enum SolveError {
     /// The finite-deformation contact.
     #[error(transparent)]
     FiniteDeformation(#[from] crate::fem::error::FemError),
+    /// The macro surface under a local law.
+    #[error(transparent)]
+    SoftContact(#[from] crate::multiscale::SoftContactError),
+    /// A local law.
+    #[error(transparent)]
+    Law(#[from] crate::multiscale::LawError),
     /// The store of solves.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),

@@ -1,6 +1,8 @@
 //! tables: friction over contact area, averaged over the realisations.
 
 use super::bem::{CURVES_FILE, CurveRow};
+use super::fem::{FEM_FILE, FemCurveRow};
+use super::hybrid::{HYBRID_FILE, HybridRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
@@ -33,8 +35,48 @@ pub struct Published {
     pub waves: u32,
     /// Its sliding speed in mm/s.
     pub speed_mm_s: f64,
+    /// Its contact model.
+    #[serde(default)]
+    pub model: Model,
     /// CSV file with at least the columns `area_fraction` and `average`.
     pub file: PathBuf,
+}
+
+/// A contact model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Model {
+    /// The viscoelastic half-space.
+    #[default]
+    Bem,
+    /// The half-space corrected by its steepest waves at finite deformation.
+    Hybrid,
+    /// All waves at finite deformation.
+    Fem,
+}
+
+impl Model {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bem => BEM,
+            Self::Hybrid => HYBRID,
+            Self::Fem => FEM,
+        }
+    }
+}
+
+const BEM: &str = "bem";
+const HYBRID: &str = "hybrid";
+const FEM: &str = "fem";
+
+/// The models of a run besides the half-space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Models {
+    /// The recipe has a section `[micro]`.
+    pub hybrid: bool,
+    /// The recipe has a section `[fem]`.
+    pub fem: bool,
 }
 
 /// The averaged friction: `friction.arrow`.
@@ -43,7 +85,8 @@ pub const FRICTION_FILE: &str = "friction.arrow";
 /// Friction at one contact area: each realisation and their average.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrictionRow {
-    /// Contact model: `bem`, the viscoelastic half-space.
+    /// Contact model: `bem`, the viscoelastic half-space; `hybrid`, corrected by its steepest
+    /// waves; `fem`, all waves at finite deformation.
     pub model: String,
     /// Number of waves of the approximation.
     pub waves: u32,
@@ -143,11 +186,23 @@ pub fn inputs(parameters: &Tables) -> Result<Vec<Input>, StageError> {
 /// [`StageError::Published`] for a published table that cannot be read; those of the store.
 pub fn run(
     parameters: &Tables,
+    models: Models,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let (curves, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
-    let rows = average(curves);
+    let (bem, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
+    let bem: Vec<Value> = bem.into_iter().map(Value::from).collect();
+    let mut rows = average(BEM, bem.clone());
+    if models.hybrid {
+        let (hybrid, _) = run.read_table::<HybridRow>("hybrid", HYBRID_FILE)?;
+        let values = hybrid.iter().filter_map(value_of).collect();
+        rows.extend(average(HYBRID, complete(values, realisations(&bem))));
+    }
+    if models.fem {
+        let (fem, _) = run.read_table::<FemCurveRow>("fem", FEM_FILE)?;
+        let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
+        rows.extend(average(FEM, complete(values, realisations(&bem))));
+    }
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
     if parameters.published.is_empty() {
         return Ok(Vec::new());
@@ -174,7 +229,8 @@ fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<Comparison
     for line in reader.deserialize::<Line>() {
         let line = line.map_err(bad)?;
         let computed = rows.iter().find(|row| {
-            row.waves == published.waves
+            row.model == published.model.name()
+                && row.waves == published.waves
                 && row.speed_mm_s == published.speed_mm_s
                 && row.contact_area_fraction == line.area_fraction
         });
@@ -192,25 +248,93 @@ fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<Comparison
     Ok(compared)
 }
 
+/// Friction of one realisation at one contact area, of any model.
+#[derive(Debug, Clone)]
+struct Value {
+    waves: u32,
+    realisation: u32,
+    speed_mm_s: f64,
+    contact_area_fraction: f64,
+    pressure_mpa: f64,
+    friction_coefficient: f64,
+    interpolation_error: f64,
+}
+
+impl From<CurveRow> for Value {
+    fn from(row: CurveRow) -> Self {
+        Self {
+            waves: row.waves,
+            realisation: row.realisation,
+            speed_mm_s: row.speed_mm_s,
+            contact_area_fraction: row.contact_area_fraction,
+            pressure_mpa: row.pressure_mpa,
+            friction_coefficient: row.friction_coefficient,
+            interpolation_error: row.interpolation_error,
+        }
+    }
+}
+
+impl From<FemCurveRow> for Value {
+    fn from(row: FemCurveRow) -> Self {
+        Self {
+            waves: row.waves,
+            realisation: row.realisation,
+            speed_mm_s: row.speed_mm_s,
+            contact_area_fraction: row.contact_area_fraction,
+            pressure_mpa: row.pressure_mpa,
+            friction_coefficient: row.friction_coefficient,
+            interpolation_error: row.interpolation_error,
+        }
+    }
+}
+
+fn value_of(row: &HybridRow) -> Option<Value> {
+    Some(Value {
+        waves: row.waves,
+        realisation: row.realisation,
+        speed_mm_s: row.speed_mm_s,
+        contact_area_fraction: row.contact_area_fraction,
+        pressure_mpa: row.pressure_mpa,
+        friction_coefficient: row.friction_coefficient?,
+        interpolation_error: row.interpolation_error,
+    })
+}
+
+/// The number of realisations of a run.
+fn realisations(bem: &[Value]) -> usize {
+    bem.iter().map(|value| value.realisation as usize).max().unwrap_or(0)
+}
+
+/// The values at areas for which every realisation has one: an average over some of them would be
+/// one over the less pressed ones.
+fn complete(values: Vec<Value>, realisations: usize) -> Vec<Value> {
+    let key = |value: &Value| {
+        (value.waves, value.speed_mm_s.to_bits(), value.contact_area_fraction.to_bits())
+    };
+    let mut counts = std::collections::BTreeMap::new();
+    values.iter().for_each(|value| *counts.entry(key(value)).or_insert(0) += 1);
+    values.into_iter().filter(|value| counts[&key(value)] == realisations).collect()
+}
+
 /// One row for each number of waves, speed and area, ascending.
-fn average(mut curves: Vec<CurveRow>) -> Vec<FrictionRow> {
-    let order = |a: &CurveRow, b: &CurveRow| {
+fn average(model: &str, mut curves: Vec<Value>) -> Vec<FrictionRow> {
+    let order = |a: &Value, b: &Value| {
         a.waves
             .cmp(&b.waves)
             .then(a.speed_mm_s.total_cmp(&b.speed_mm_s))
             .then(a.contact_area_fraction.total_cmp(&b.contact_area_fraction))
     };
     curves.sort_by(|a, b| order(a, b).then(a.realisation.cmp(&b.realisation)));
-    curves.chunk_by(|a, b| order(a, b).is_eq()).map(row).collect()
+    curves.chunk_by(|a, b| order(a, b).is_eq()).map(|values| row(model, values)).collect()
 }
 
-fn row(curves: &[CurveRow]) -> FrictionRow {
+fn row(model: &str, curves: &[Value]) -> FrictionRow {
     let realisations: Vec<f64> = curves.iter().map(|c| c.friction_coefficient).collect();
     let estimate = MeanEstimate::of(&realisations);
     let present = |value: f64| value.is_finite().then_some(value);
     let first = &curves[0];
     FrictionRow {
-        model: "bem".into(),
+        model: model.into(),
         waves: first.waves,
         speed_mm_s: first.speed_mm_s,
         contact_area_fraction: first.contact_area_fraction,
@@ -227,8 +351,8 @@ fn row(curves: &[CurveRow]) -> FrictionRow {
 mod tests {
     use super::*;
 
-    fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> CurveRow {
-        CurveRow {
+    fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> Value {
+        Value {
             waves,
             realisation,
             speed_mm_s: 10.0,
@@ -241,13 +365,16 @@ mod tests {
 
     #[test]
     fn rows_are_averaged_over_realisations_whatever_their_order() {
-        let rows = average(vec![
-            curve(9, 1, 0.1, 7.0),
-            curve(8, 2, 0.1, 3.0),
-            curve(8, 1, 0.05, 1.5),
-            curve(8, 1, 0.1, 1.0),
-            curve(8, 2, 0.05, 2.5),
-        ]);
+        let rows = average(
+            BEM,
+            vec![
+                curve(9, 1, 0.1, 7.0),
+                curve(8, 2, 0.1, 3.0),
+                curve(8, 1, 0.05, 1.5),
+                curve(8, 1, 0.1, 1.0),
+                curve(8, 2, 0.05, 2.5),
+            ],
+        );
         assert_eq!(rows.len(), 3);
         assert_eq!(rows[0].realisations, [1.5, 2.5]);
         assert_eq!((rows[1].mean, rows[1].interpolation_error), (2.0, 3e-3));

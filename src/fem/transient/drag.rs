@@ -44,9 +44,22 @@ struct Course {
     counts: Counts,
     /// Motion of the lower edge over that of the upper one in the last step of the drag.
     following: f64,
+    /// Distance in m, in whole periods, that is left out of the displacements of the state. A drag
+    /// of many periods would drown the strains in the round-off of the displacements.
+    left_out: f64,
 }
 
 impl Course {
+    /// Goes back by the whole periods of a displacement; the profile is the same there.
+    fn leave_out_periods(&mut self, displacement: f64) {
+        let period = self.block.mesh().period;
+        let distance = (displacement / period).floor() * period;
+        if distance > 0.0 {
+            self.state.nodes.iter_mut().step_by(2).for_each(|x| *x -= distance);
+            self.left_out += distance;
+        }
+    }
+
     /// Adds the sample of a step from the state `old` to the present one.
     fn record(
         &mut self,
@@ -147,6 +160,7 @@ impl TransientContact {
             samples: vec![self.start()],
             counts: Counts::default(),
             following: 0.0,
+            left_out: 0.0,
         };
         progress(&course.samples[0]);
         let mut averaged_from = 0;
@@ -229,16 +243,19 @@ impl TransientContact {
         let mesh = course.block.mesh();
         let distance = load.displacement - last.displacement;
         let guess = carried(mesh, &course.state, course.following * distance, distance);
+        let within = Load { displacement: load.displacement - course.left_out, ..load };
         let (state, contact, history) = self.stepper.advance(
             &course.block,
             guess,
-            load,
+            within,
             time_step,
             &mut course.counts.iterations,
         )?;
         let heat = course.block.keep(&history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
         let old = std::mem::replace(&mut course.state, state);
-        Ok(course.record(&old, &contact, time, load, heat))
+        let sample = course.record(&old, &contact, time, load, heat);
+        course.leave_out_periods(within.displacement);
+        Ok(sample)
     }
 
     fn load(&self, time: f64, pressure: f64) -> Load {

@@ -1,0 +1,158 @@
+//! What the microscale changes of the friction of a macro contact.
+
+use super::LawError;
+use crate::numerics::interpolation::CubicHermite;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How local corrections become one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeanRule {
+    /// Weighted with the local pressure: friction is a force, and so adds up.
+    #[default]
+    Force,
+    /// The plain mean over the contact points, the rule of the thesis (5.1.1-2).
+    Points,
+}
+
+/// Friction and area of the microscale over its mean pressure, under both models.
+#[derive(Debug, Clone)]
+pub struct Microscale {
+    pressures: (f64, f64),
+    half_space: CubicHermite,
+    finite: CubicHermite,
+    area_change: CubicHermite,
+    interpolation_error: f64,
+}
+
+/// Corrections of friction and area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Correction {
+    /// Change of friction, weighted with the local pressures.
+    pub force: f64,
+    /// Change of friction, the plain mean over the contact points.
+    pub points: f64,
+    /// Change of the contact area fraction.
+    pub area: f64,
+}
+
+impl Microscale {
+    /// From samples at ascending pressures in Pa: friction of both models, the contact area
+    /// fraction at finite deformation less that of the half-space, and the errors by interpolation.
+    /// Between the samples cubics in `ln p`.
+    ///
+    /// # Panics
+    /// If the lengths differ, there is no sample, or the pressures do not ascend from above zero.
+    pub fn new(
+        pressures: &[f64],
+        half_space: Vec<f64>,
+        finite: Vec<f64>,
+        area_change: Vec<f64>,
+        errors: Vec<f64>,
+    ) -> Self {
+        let logarithms = || pressures.iter().map(|p| p.ln()).collect::<Vec<f64>>();
+        Self {
+            pressures: (pressures[0], pressures[pressures.len() - 1]),
+            half_space: CubicHermite::smooth(logarithms(), half_space),
+            finite: CubicHermite::smooth(logarithms(), finite),
+            area_change: CubicHermite::smooth(logarithms(), area_change),
+            interpolation_error: errors.into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// The smallest sampled pressure in Pa. A contact point has at least this pressure: below it
+    /// the mesh of the microscale does not resolve the contact.
+    pub fn smallest_pressure(&self) -> f64 {
+        self.pressures.0
+    }
+
+    /// The largest sampled pressure in Pa.
+    pub fn largest_pressure(&self) -> f64 {
+        self.pressures.1
+    }
+
+    /// Largest estimated error of a correction by interpolation.
+    pub fn interpolation_error(&self) -> f64 {
+        self.interpolation_error
+    }
+
+    /// Friction of the half-space and at finite deformation at a sampled pressure in Pa; none
+    /// outside the samples.
+    pub fn friction(&self, pressure: f64) -> Option<(f64, f64)> {
+        let sampled = (self.pressures.0..=self.pressures.1).contains(&pressure);
+        let log = pressure.ln();
+        sampled.then(|| (self.half_space.at(log), self.finite.at(log)))
+    }
+
+    /// The corrections under local pressures in Pa on equidistant points. Pressures below the
+    /// smallest sampled one are no contact points; their little force takes the correction of
+    /// the smallest, their area none.
+    ///
+    /// # Errors
+    /// [`LawError::BeyondSamples`] for a pressure above the largest sampled one.
+    pub fn correction(&self, local: &[f64]) -> Result<Correction, LawError> {
+        let (smallest, largest) = self.pressures;
+        let (mut force, mut load, mut points, mut count, mut area) = (0.0, 0.0, 0.0, 0, 0.0);
+        for &pressure in local.iter().filter(|p| **p > 0.0) {
+            if pressure > largest {
+                return Err(LawError::BeyondSamples { pressure, largest });
+            }
+            let log = pressure.max(smallest).ln();
+            let change = self.finite.at(log) - self.half_space.at(log);
+            force += pressure * change;
+            load += pressure;
+            if pressure >= smallest {
+                points += change;
+                count += 1;
+                area += self.area_change.at(log);
+            }
+        }
+        let mean = |sum: f64, over: f64| if over > 0.0 { sum / over } else { 0.0 };
+        Ok(Correction {
+            force: mean(force, load),
+            points: mean(points, f64::from(count)),
+            area: area / local.len() as f64,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Linear in ln p, which the cubics keep.
+    fn microscale() -> Microscale {
+        let pressures = [1.0, 2.0, 4.0, 8.0];
+        let finite = pressures.iter().map(|p: &f64| 0.5 + 0.1 * p.ln()).collect();
+        let area = pressures.iter().map(|p: &f64| 0.01 * p.ln()).collect();
+        Microscale::new(&pressures, vec![0.4; 4], finite, area, vec![0.0, 2e-4, 1e-4, 0.0])
+    }
+
+    #[test]
+    fn means_are_those_by_hand() {
+        let correction = microscale().correction(&[0.0, 0.5, 2.0, 6.0]).unwrap();
+        let (two, six) = (0.1 + 0.1 * 2.0_f64.ln(), 0.1 + 0.1 * 6.0_f64.ln());
+        assert_relative_eq!(correction.points, 0.5 * (two + six), max_relative = 1e-12);
+        let force = (0.5 * 0.1 + 2.0 * two + 6.0 * six) / 8.5;
+        assert_relative_eq!(correction.force, force, max_relative = 1e-12);
+        assert_relative_eq!(correction.area, 0.01 * 12.0_f64.ln() / 4.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn nothing_beyond_the_samples() {
+        let microscale = microscale();
+        let error = microscale.correction(&[3.0, 8.1]).unwrap_err();
+        assert!(matches!(error, LawError::BeyondSamples { pressure: 8.1, largest: 8.0 }));
+        assert!(microscale.friction(0.9).is_none() && microscale.friction(8.1).is_none());
+        let (half_space, finite) = microscale.friction(8.0).unwrap();
+        assert_relative_eq!(finite - half_space, 0.1 + 0.1 * 8.0_f64.ln(), max_relative = 1e-12);
+    }
+
+    #[test]
+    fn no_pressure_no_correction() {
+        let correction = microscale().correction(&[0.0; 3]).unwrap();
+        assert_eq!(correction, Correction { force: 0.0, points: 0.0, area: 0.0 });
+    }
+}

@@ -1,0 +1,56 @@
+//! Which waves of a profile are the microscale.
+
+use crate::surface::{SineScale, Wave};
+
+/// A profile taken apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scales {
+    /// Waves with a root mean square slope above the threshold.
+    pub micro: Vec<Wave>,
+    /// The others.
+    pub macroscale: Vec<Wave>,
+}
+
+/// Root mean square slope of one wave.
+fn rms_slope(wave: &Wave) -> f64 {
+    SineScale { wavelength: wave.wavelength, amplitude: wave.amplitude.abs() }.rms_slope()
+}
+
+impl Scales {
+    /// Parts the waves at an rms slope. A single micro wave has no phase of its own: it is set to
+    /// zero, so that all realisations share it.
+    pub fn part(waves: &[Wave], threshold: f64) -> Self {
+        let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
+        let (mut micro, macroscale): (Vec<Wave>, Vec<Wave>) =
+            present.copied().partition(|wave| rms_slope(wave) > threshold);
+        if let [only] = micro.as_mut_slice() {
+            only.phase = 0.0;
+        }
+        Self { micro, macroscale }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steep_waves_are_the_microscale() {
+        let wave = |wavelength, amplitude, phase| Wave { wavelength, amplitude, phase };
+        let waves = [
+            wave(0.0625, 0.01867, 1.0),
+            wave(0.125, 0.02648, 2.0),
+            wave(0.25, 0.02939, 3.0),
+            wave(0.5, 0.0, 4.0),
+        ];
+        // Slopes of Table 3.1.
+        for (wave, published) in waves.iter().zip([1.3275, 0.9403, 0.5223]) {
+            approx::assert_relative_eq!(rms_slope(wave), published, max_relative = 2e-4);
+        }
+        let one = Scales::part(&waves, 1.0);
+        assert_eq!((one.micro[0].phase, one.micro.len(), one.macroscale.len()), (0.0, 1, 2));
+        let two = Scales::part(&waves, 0.9);
+        assert_eq!((two.micro[0].phase, two.micro.len()), (1.0, 2));
+        assert!(Scales::part(&waves, 2.0).micro.is_empty());
+    }
+}

@@ -1,0 +1,352 @@
+//! hybrid: friction of the half-space, corrected where the steepest waves deform too much for it
+//! (thesis 5.1).
+//!
+//! ```text
+//! μ = μ_init(p) + mean_i (μ_FEM(p_i) - μ_BEM(p_i))
+//! ```
+//!
+//! with the local pressures `p_i` of the macro surface under the repulsive law of the microscale.
+
+use super::bem::{CURVES_FILE, CurveRow};
+use super::micro::{LAW_FILE, LawRow, Micro, SAMPLES_FILE, SampleRow, law_of};
+use super::realise::{Surface, read_surfaces};
+use super::{Context, SolveError, StageError, schema_of};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use crate::multiscale::correction::{Correction, MeanRule, Microscale};
+use crate::multiscale::scales::Scales;
+use crate::multiscale::{LawEnd, LocalLaw, SoftContact, SoftContactSolution};
+use crate::rubber::Rubber;
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[hybrid]` of a recipe.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Hybrid {
+    /// How the local corrections are averaged.
+    pub mean: MeanRule,
+    /// Whose separation over pressure the macro surface meets.
+    pub law: RepulsiveLaw,
+}
+
+/// The model that gives the repulsive law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RepulsiveLaw {
+    /// The half-space, up to full contact.
+    #[default]
+    HalfSpace,
+    /// Finite deformation, as far as it was sampled and the separation falls.
+    FiniteDeformation,
+}
+
+/// Corrected friction: `curves.arrow`.
+pub const HYBRID_FILE: &str = "curves.arrow";
+/// The local corrections one by one, in the layout of Table 5.3: `local.arrow`.
+pub const LOCAL_FILE: &str = "local.arrow";
+
+/// Corrected friction of one realisation at one contact area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HybridRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Contact area fraction of the half-space.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Mean pressure.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient of the half-space with all waves.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_half_space: f64,
+    /// Corrected friction coefficient by the rule of the recipe; absent where a local pressure is
+    /// beyond the sampled microscale.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_coefficient: Option<f64>,
+    /// Correction by the plain mean over the contact points.
+    #[schemars(extend("unit" = "1"))]
+    pub correction_points: Option<f64>,
+    /// Correction by the mean weighted with the local pressures, which conserves force.
+    #[schemars(extend("unit" = "1"))]
+    pub correction_force: Option<f64>,
+    /// Change of the contact area fraction by finite deformation, the mean over all points.
+    #[schemars(extend("unit" = "1"))]
+    pub correction_of_area: Option<f64>,
+    /// Estimated error of the correction by interpolation between the samples.
+    #[schemars(extend("unit" = "1"))]
+    pub interpolation_error: f64,
+    /// Share of the macro points that count as contact points: their local pressure is at least
+    /// the smallest one sampled.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_points_fraction: f64,
+    /// Largest local pressure.
+    #[schemars(extend("unit" = "MPa"))]
+    pub largest_pressure_mpa: f64,
+    /// Largest sampled pressure of the microscale.
+    #[schemars(extend("unit" = "MPa"))]
+    pub largest_sample_mpa: f64,
+    /// Residual of the macro contact, relative.
+    #[schemars(extend("unit" = "1"))]
+    pub residual: f64,
+}
+
+impl Row for HybridRow {
+    const SCHEMA: &'static str = "asperity.hybrid.curves";
+    const VERSION: u32 = 1;
+}
+
+/// One local correction: the macro points over one period of the microscale, averaged.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LocalRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Contact area fraction of the half-space.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Position of the middle.
+    #[schemars(extend("unit" = "mm"))]
+    pub x_mm: f64,
+    /// Local mean pressure.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient of the microscale at finite deformation.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_finite_deformation: f64,
+    /// Friction coefficient of the microscale on the half-space.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_half_space: f64,
+    /// Their difference.
+    #[schemars(extend("unit" = "1"))]
+    pub correction: f64,
+}
+
+impl Row for LocalRow {
+    const SCHEMA: &'static str = "asperity.hybrid.local";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![schema_of::<HybridRow>(), schema_of::<LocalRow>()]
+}
+
+/// What all curves read.
+struct Data {
+    curves: Vec<CurveRow>,
+    samples: Vec<SampleRow>,
+    laws: Vec<LawRow>,
+}
+
+/// Corrects the curves of the half-space and writes them; returns warnings.
+///
+/// # Errors
+/// [`StageError::Microscale`] for a macro contact that has no solution.
+pub fn run(
+    parameters: &Hybrid,
+    micro: &Micro,
+    rubber: &Rubber,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let surfaces = read_surfaces(run)?;
+    let data = Data {
+        curves: run.read_table::<CurveRow>("bem", CURVES_FILE)?.0,
+        samples: run.read_table::<SampleRow>("micro", SAMPLES_FILE)?.0,
+        laws: run.read_table::<LawRow>("micro", LAW_FILE)?.0,
+    };
+    let results: Vec<(Vec<HybridRow>, Vec<LocalRow>)> = surfaces
+        .par_iter()
+        .map(|surface| {
+            context.check_interrupt()?;
+            one_surface(parameters, micro, rubber, surface, &data)
+        })
+        .collect::<Result<_, StageError>>()?;
+    let (rows, locals): (Vec<_>, Vec<_>) = results.into_iter().unzip();
+    let (rows, locals): (Vec<HybridRow>, Vec<LocalRow>) = (rows.concat(), locals.concat());
+    context.pending.write_table(HYBRID_FILE, &rows, &Metadata::new())?;
+    context.pending.write_table(LOCAL_FILE, &locals, &Metadata::new())?;
+    let beyond = rows.iter().filter(|row| row.friction_coefficient.is_none());
+    let needed = beyond.clone().map(|row| row.largest_pressure_mpa).fold(0.0, f64::max);
+    Ok(match beyond.count() {
+        0 => Vec::new(),
+        count => vec![format!(
+            "{count} of {} values have no correction: the local pressure reaches {needed:.3} MPa, \
+             beyond the sampled microscale",
+            rows.len()
+        )],
+    })
+}
+
+fn one_surface(
+    parameters: &Hybrid,
+    micro: &Micro,
+    rubber: &Rubber,
+    surface: &Surface,
+    data: &Data,
+) -> Result<(Vec<HybridRow>, Vec<LocalRow>), StageError> {
+    let scales = Scales::part(&surface.profile, micro.rms_slope_threshold);
+    let curves: Vec<&CurveRow> = data
+        .curves
+        .iter()
+        .filter(|row| row.waves == surface.waves && row.realisation == surface.realisation)
+        .collect();
+    if scales.micro.is_empty() {
+        return Ok((curves.into_iter().map(uncorrected).collect(), Vec::new()));
+    }
+    let cell = scales.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+    let (heights, period) = micro.macro_heights(surface, &scales.macroscale);
+    let (mut rows, mut locals) = (Vec::new(), Vec::new());
+    for at_one_speed in curves.chunk_by(|a, b| a.speed_mm_s == b.speed_mm_s) {
+        let speed_mm_s = at_one_speed[0].speed_mm_s;
+        let failed = |source: SolveError| StageError::Microscale {
+            waves: surface.waves,
+            speed_mm_s,
+            source: Box::new(source),
+        };
+        let (microscale, law) =
+            microscale(parameters, surface, speed_mm_s, data).map_err(failed)?;
+        let mut contact = SoftContact::new(rubber, speed_mm_s / 1e3, period, &heights, law)
+            .map_err(|error| failed(error.into()))?;
+        for curve in at_one_speed {
+            let solution =
+                contact.solve(curve.pressure_mpa * 1e6).map_err(|error| failed(error.into()))?;
+            rows.push(corrected(parameters, curve, &microscale, &solution));
+            locals.extend(local_rows(curve, &microscale, &solution, period, cell));
+        }
+    }
+    Ok((rows, locals))
+}
+
+/// The microscale of a surface at a speed and the law that its macro surface meets.
+fn microscale(
+    parameters: &Hybrid,
+    surface: &Surface,
+    speed_mm_s: f64,
+    data: &Data,
+) -> Result<(Microscale, LocalLaw), SolveError> {
+    let of = |waves: u32, realisation: u32, speed: f64| {
+        waves == surface.waves
+            && [0, surface.realisation].contains(&realisation)
+            && speed == speed_mm_s
+    };
+    let samples: Vec<&SampleRow> =
+        data.samples.iter().filter(|row| of(row.waves, row.realisation, row.speed_mm_s)).collect();
+    let rows: Vec<LawRow> = data
+        .laws
+        .iter()
+        .filter(|row| of(row.waves, row.realisation, row.speed_mm_s))
+        .cloned()
+        .collect();
+    let column = |value: fn(&SampleRow) -> f64| samples.iter().map(|row| value(row)).collect();
+    let pressures: Vec<f64> = column(|row| row.pressure_mpa * 1e6);
+    let law = match parameters.law {
+        RepulsiveLaw::HalfSpace => law_of(&rows)?,
+        RepulsiveLaw::FiniteDeformation => {
+            let separations: Vec<f64> = column(|row| row.separation_finite_deformation_mm / 1e3);
+            let falling = 1 + separations.windows(2).take_while(|pair| pair[1] < pair[0]).count();
+            let touch = rows.first().map_or(0.0, |row| row.touch_separation_m);
+            let end = LawEnd::PartialContact;
+            LocalLaw::new(touch, &pressures[..falling], &separations[..falling], end)?
+        }
+    };
+    let microscale = Microscale::new(
+        &pressures,
+        column(|row| row.friction_half_space),
+        column(|row| row.friction_finite_deformation),
+        column(|row| row.area_finite_deformation - row.area_half_space),
+        column(|row| row.interpolation_error),
+    );
+    Ok((microscale, law))
+}
+
+fn corrected(
+    parameters: &Hybrid,
+    curve: &CurveRow,
+    microscale: &Microscale,
+    solution: &SoftContactSolution,
+) -> HybridRow {
+    let correction = microscale.correction(&solution.pressure).ok();
+    let chosen = |correction: &Correction| match parameters.mean {
+        MeanRule::Force => correction.force,
+        MeanRule::Points => correction.points,
+    };
+    let points = solution.pressure.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
+    HybridRow {
+        friction_coefficient: correction.as_ref().map(|c| curve.friction_coefficient + chosen(c)),
+        correction_points: correction.as_ref().map(|c| c.points),
+        correction_force: correction.as_ref().map(|c| c.force),
+        correction_of_area: correction.as_ref().map(|c| c.area),
+        interpolation_error: curve.interpolation_error + microscale.interpolation_error(),
+        contact_points_fraction: points as f64 / solution.pressure.len() as f64,
+        largest_pressure_mpa: solution.pressure.iter().copied().fold(0.0, f64::max) / 1e6,
+        largest_sample_mpa: microscale.largest_pressure() / 1e6,
+        residual: solution.residual,
+        ..uncorrected(curve)
+    }
+}
+
+/// Without a microscale the friction is that of the half-space.
+fn uncorrected(curve: &CurveRow) -> HybridRow {
+    HybridRow {
+        waves: curve.waves,
+        realisation: curve.realisation,
+        speed_mm_s: curve.speed_mm_s,
+        contact_area_fraction: curve.contact_area_fraction,
+        pressure_mpa: curve.pressure_mpa,
+        friction_half_space: curve.friction_coefficient,
+        friction_coefficient: Some(curve.friction_coefficient),
+        correction_points: Some(0.0),
+        correction_force: Some(0.0),
+        correction_of_area: Some(0.0),
+        interpolation_error: curve.interpolation_error,
+        contact_points_fraction: 0.0,
+        largest_pressure_mpa: 0.0,
+        largest_sample_mpa: 0.0,
+        residual: 0.0,
+    }
+}
+
+/// The cells, one period of the microscale each, whose mean pressure was sampled.
+fn local_rows(
+    curve: &CurveRow,
+    microscale: &Microscale,
+    solution: &SoftContactSolution,
+    period: f64,
+    cell: f64,
+) -> Vec<LocalRow> {
+    let cells = (period / cell).round() as usize;
+    let points = solution.pressure.len();
+    (0..cells)
+        .filter_map(|k| {
+            let range = k * points / cells..((k + 1) * points / cells).max(k * points / cells + 1);
+            let count = range.len() as f64;
+            let pressure = solution.pressure[range].iter().sum::<f64>() / count;
+            let (half_space, finite) = microscale.friction(pressure)?;
+            Some(LocalRow {
+                waves: curve.waves,
+                realisation: curve.realisation,
+                speed_mm_s: curve.speed_mm_s,
+                contact_area_fraction: curve.contact_area_fraction,
+                x_mm: (k as f64 + 0.5) * cell * 1e3,
+                pressure_mpa: pressure / 1e6,
+                friction_finite_deformation: finite,
+                friction_half_space: half_space,
+                correction: finite - half_space,
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,314 @@
+//! micro: friction, area and separation of the steepest waves over their mean pressure, on the
+//! half-space and at finite deformation.
+
+mod curve;
+
+use super::bem::{CURVES_FILE, CurveRow};
+use super::realise::{Surface, read_surfaces};
+use super::{Context, SolveError, StageError, schema_of};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion, SolveStore};
+use crate::fem::steady::COLUMNS_RANGE;
+use crate::multiscale::scales::Scales;
+use crate::multiscale::{LocalLaw, SoftContact};
+use crate::recipe::{Violation, demand};
+use crate::rubber::Rubber;
+use crate::surface::{Wave, wave};
+use curve::MicroCurve;
+pub(crate) use curve::law_of;
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Revision of this stage: raised when the same parameters give other numbers.
+pub const REVISION: u32 = 1;
+
+/// Section `[micro]` of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Micro {
+    /// Waves with a larger root mean square slope are the microscale, where deformations are too
+    /// large for the half-space.
+    pub rms_slope_threshold: f64,
+    /// Elements on the shortest wave.
+    pub columns_per_shortest_wavelength: u32,
+    /// Accuracy of friction by interpolation between sampled pressures, relative to the friction.
+    pub tolerance: f64,
+    /// Grid points of the macro surface on its shortest wave, at least; the grid is the next power
+    /// of two.
+    pub points_per_shortest_macro_wavelength: u32,
+}
+
+impl Default for Micro {
+    fn default() -> Self {
+        Self {
+            rms_slope_threshold: 1.0,
+            columns_per_shortest_wavelength: 96,
+            tolerance: 1e-3,
+            points_per_shortest_macro_wavelength: 32,
+        }
+    }
+}
+
+impl Micro {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        let threshold = self.rms_slope_threshold;
+        let key = "micro.rms_slope_threshold";
+        demand(threshold > 0.0 && threshold.is_finite(), key, threshold, "positive")?;
+        let columns = self.columns_per_shortest_wavelength;
+        let key = "micro.columns_per_shortest_wavelength";
+        demand((16..=1024).contains(&columns), key, columns, "16 to 1024")?;
+        let tolerance = self.tolerance;
+        let key = "micro.tolerance";
+        demand((1e-6..=0.1).contains(&tolerance), key, tolerance, "between 1e-6 and 0.1")?;
+        let points = self.points_per_shortest_macro_wavelength;
+        let key = "micro.points_per_shortest_macro_wavelength";
+        demand((4..=4096).contains(&points), key, points, "4 to 4096")
+    }
+
+    /// The heights of a macro surface in m on its grid, and their period in m.
+    pub(crate) fn macro_heights(&self, surface: &Surface, macroscale: &[Wave]) -> (Vec<f64>, f64) {
+        let period = surface.profile.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let shortest = macroscale.iter().map(|wave| wave.wavelength).fold(period, f64::min);
+        let points = f64::from(self.points_per_shortest_macro_wavelength) * period / shortest;
+        let points = (points.round() as usize).next_power_of_two();
+        (wave::sample(macroscale, period, points), period)
+    }
+}
+
+/// The sampled microscale: `samples.arrow`.
+pub const SAMPLES_FILE: &str = "samples.arrow";
+
+/// The microscale at one mean pressure, under both models.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SampleRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1; 0 for a single wave, which all realisations share.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Mean pressure.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient of the half-space.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_half_space: f64,
+    /// Friction coefficient at finite deformation.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_finite_deformation: f64,
+    /// The same from the heat of the branches; the difference measures the mesh.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_from_heat: f64,
+    /// Contact area fraction of the half-space.
+    #[schemars(extend("unit" = "1"))]
+    pub area_half_space: f64,
+    /// Contact area fraction at finite deformation.
+    #[schemars(extend("unit" = "1"))]
+    pub area_finite_deformation: f64,
+    /// Mean separation of the half-space.
+    #[schemars(extend("unit" = "mm"))]
+    pub separation_half_space_mm: f64,
+    /// Mean separation at finite deformation.
+    #[schemars(extend("unit" = "mm"))]
+    pub separation_finite_deformation_mm: f64,
+    /// Estimated error of the difference of both frictions by interpolation at this sample.
+    #[schemars(extend("unit" = "1"))]
+    pub interpolation_error: f64,
+    /// Residual of the finite-deformation contact, relative.
+    #[schemars(extend("unit" = "1"))]
+    pub residual: f64,
+    /// Newton steps since the sample before.
+    pub newton_steps: u64,
+    /// Wall time of the solve at finite deformation.
+    #[schemars(extend("unit" = "s", "volatile" = true))]
+    pub seconds: f64,
+}
+
+impl Row for SampleRow {
+    const SCHEMA: &'static str = "asperity.micro.samples";
+    const VERSION: u32 = 1;
+}
+
+/// The repulsive law of the half-space: `law.arrow`.
+pub const LAW_FILE: &str = "law.arrow";
+
+/// Mean separation of the microscale on the half-space at one mean pressure; the last one of a
+/// curve is full contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LawRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1; 0 for a single wave, which all realisations share.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Separation at first touch: the largest height above the mean.
+    #[schemars(extend("unit" = "m"))]
+    pub touch_separation_m: f64,
+    /// Mean pressure.
+    #[schemars(extend("unit" = "Pa"))]
+    pub pressure_pa: f64,
+    /// Mean separation.
+    #[schemars(extend("unit" = "m"))]
+    pub separation_m: f64,
+}
+
+impl Row for LawRow {
+    const SCHEMA: &'static str = "asperity.micro.law";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    vec![schema_of::<SampleRow>(), schema_of::<LawRow>()]
+}
+
+/// The microscale of one approximation, or of one realisation of it, and the surfaces that have
+/// it.
+struct Task<'a> {
+    waves: u32,
+    realisation: u32,
+    speed_mm_s: f64,
+    micro: Vec<Wave>,
+    surfaces: Vec<&'a Surface>,
+}
+
+/// Samples the microscales over the pressures that the macro contacts ask for; returns warnings.
+///
+/// # Errors
+/// [`StageError::Microscale`]; [`StageError::Interrupted`]. Solves that are done are kept.
+pub fn run(
+    parameters: &Micro,
+    rubber: &Rubber,
+    run: &RunView,
+    store: &SolveStore,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let surfaces = read_surfaces(run)?;
+    let (curves, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
+    let tasks = tasks(parameters, &surfaces, &curves)?;
+    let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
+    (context.progress)(0, total);
+    let results: Vec<TaskResult> = tasks
+        .par_iter()
+        .map(|task| {
+            context.check_interrupt()?;
+            let result = one_task(parameters, rubber, task, &curves, store, context)?;
+            (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
+            Ok(result)
+        })
+        .collect::<Result<_, StageError>>()?;
+    let none = Metadata::new();
+    let samples: Vec<_> = results.iter().flat_map(|r| r.samples.iter().cloned()).collect();
+    context.pending.write_table(SAMPLES_FILE, &samples, &none)?;
+    let laws: Vec<_> = results.iter().flat_map(|r| r.law.iter().cloned()).collect();
+    context.pending.write_table(LAW_FILE, &laws, &none)?;
+    let mut warnings: Vec<String> = results.into_iter().filter_map(|r| r.warning).collect();
+    if tasks.is_empty() {
+        warnings.push(format!(
+            "no wave is steeper than {} (micro.rms_slope_threshold): nothing to correct",
+            parameters.rms_slope_threshold
+        ));
+    }
+    Ok(warnings)
+}
+
+fn tasks<'a>(
+    parameters: &Micro,
+    surfaces: &'a [Surface],
+    curves: &[CurveRow],
+) -> Result<Vec<Task<'a>>, StageError> {
+    let mut speeds: Vec<f64> = curves.iter().map(|row| row.speed_mm_s).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let mut tasks: Vec<Task> = Vec::new();
+    for surface in surfaces {
+        let Scales { micro, macroscale } =
+            Scales::part(&surface.profile, parameters.rms_slope_threshold);
+        if micro.is_empty() {
+            continue;
+        }
+        if macroscale.is_empty() {
+            let (waves, threshold) = (surface.waves, parameters.rms_slope_threshold);
+            return Err(StageError::NoMacroscale { waves, threshold });
+        }
+        for &speed_mm_s in &speeds {
+            let shared = tasks.iter_mut().find(|task| {
+                task.waves == surface.waves && task.speed_mm_s == speed_mm_s && task.micro == micro
+            });
+            if let Some(task) = shared {
+                task.surfaces.push(surface);
+                continue;
+            }
+            let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
+            let (waves, micro) = (surface.waves, micro.clone());
+            let surfaces = vec![surface];
+            tasks.push(Task { waves, realisation, speed_mm_s, micro, surfaces });
+        }
+    }
+    Ok(tasks)
+}
+
+struct TaskResult {
+    samples: Vec<SampleRow>,
+    law: Vec<LawRow>,
+    warning: Option<String>,
+}
+
+fn one_task(
+    parameters: &Micro,
+    rubber: &Rubber,
+    task: &Task,
+    curves: &[CurveRow],
+    store: &SolveStore,
+    context: &Context,
+) -> Result<TaskResult, StageError> {
+    let failed = |source: SolveError| match context.check_interrupt() {
+        Err(interrupt) => interrupt,
+        Ok(()) => StageError::Microscale {
+            waves: task.waves,
+            speed_mm_s: task.speed_mm_s,
+            source: Box::new(source),
+        },
+    };
+    let mut curve = MicroCurve::new(parameters, rubber, task, store, context.interrupted);
+    let (law, rows) = curve.law().map_err(failed)?;
+    let largest = largest_pressure(parameters, rubber, task, curves, &law).map_err(failed)?;
+    let (samples, warning) = curve.sample(largest).map_err(failed)?;
+    Ok(TaskResult { samples, law: rows, warning })
+}
+
+/// The largest local pressure in Pa that the macro contacts of a task reach.
+fn largest_pressure(
+    parameters: &Micro,
+    rubber: &Rubber,
+    task: &Task,
+    curves: &[CurveRow],
+    law: &LocalLaw,
+) -> Result<f64, SolveError> {
+    let mut largest = 0.0_f64;
+    for surface in &task.surfaces {
+        let pressures = curves
+            .iter()
+            .filter(|row| row.waves == surface.waves && row.realisation == surface.realisation)
+            .filter(|row| row.speed_mm_s == task.speed_mm_s)
+            .map(|row| row.pressure_mpa * 1e6);
+        let mean = pressures.fold(0.0, f64::max);
+        let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
+        let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
+        let speed = task.speed_mm_s / 1e3;
+        let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?;
+        let solution = contact.solve(mean)?;
+        largest = solution.pressure.iter().copied().fold(largest, f64::max);
+    }
+    Ok(largest)
+}
+
+/// Columns of the mesh of a microscale: so many elements on its shortest wave.
+pub(crate) fn columns(per_wave: u32, period: f64, shortest: f64) -> usize {
+    let columns = (f64::from(per_wave) * period / shortest).round() as usize;
+    columns.clamp(*COLUMNS_RANGE.start(), *COLUMNS_RANGE.end())
+}

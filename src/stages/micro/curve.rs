@@ -1,0 +1,268 @@
+//! One microscale at one speed, sampled as densely as the tolerance needs.
+
+use super::{LawRow, Micro, SampleRow, Task, columns};
+use crate::artifact::{Digest, SolveStore};
+use crate::contact::{ContactSolution, SlidingContact};
+use crate::fem::error::{FemError, PathEnd};
+use crate::fem::profile::RigidProfile;
+use crate::fem::steady::{BlockOptions, SteadyContact};
+use crate::multiscale::sampling::{geometric, interpolation_errors, refinement};
+use crate::multiscale::{LawEnd, LocalLaw};
+use crate::rubber::{Rheology, Rubber};
+use crate::stages::SolveError;
+use crate::surface::{Wave, wave};
+use serde_json::json;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Revision of the solvers: part of the key of every stored solve.
+const SOLVER_REVISION: u32 = 1;
+/// Grid points of the half-space on the shortest wave.
+const POINTS_PER_WAVE: f64 = 1024.0;
+/// Samples of the repulsive law up to full contact, at `p* (0.1 + 0.9 t)^4`: see [`LocalLaw`].
+const LAW_SAMPLES: usize = 40;
+/// Elements in contact at the smallest pressure that is sampled: fewer give no friction worth the
+/// name.
+const FEWEST_CONTACT_ELEMENTS: f64 = 4.0;
+/// Ratio of the first samples.
+const FIRST_RATIO: f64 = 1.6;
+/// Rounds of refinement; each halves the steps where it is needed.
+const MOST_ROUNDS: usize = 4;
+/// Sampled beyond the largest local pressure, so that no macro contact misses it by round-off.
+const MARGIN: f64 = 1.02;
+
+pub(super) struct MicroCurve<'a> {
+    parameters: &'a Micro,
+    rubber: &'a Rubber,
+    task: &'a Task<'a>,
+    store: &'a SolveStore,
+    interrupted: &'a AtomicBool,
+    period: f64,
+    columns: usize,
+    half_space: Option<SlidingContact>,
+    block: Option<SteadyContact>,
+}
+
+impl<'a> MicroCurve<'a> {
+    pub fn new(
+        parameters: &'a Micro,
+        rubber: &'a Rubber,
+        task: &'a Task<'a>,
+        store: &'a SolveStore,
+        interrupted: &'a AtomicBool,
+    ) -> Self {
+        let period = task.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let shortest = task.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
+        let columns = columns(parameters.columns_per_shortest_wavelength, period, shortest);
+        let (half_space, block) = (None, None);
+        Self { parameters, rubber, task, store, interrupted, period, columns, half_space, block }
+    }
+
+    /// The repulsive law of the half-space up to full contact.
+    pub fn law(&mut self) -> Result<(LocalLaw, Vec<LawRow>), SolveError> {
+        let heights = self.heights();
+        let touch_separation_m = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - heights.iter().sum::<f64>() / heights.len() as f64;
+        let full = self.half_space()?.full_contact_limit();
+        let Task { waves, realisation, speed_mm_s, .. } = *self.task;
+        let mut rows = Vec::with_capacity(LAW_SAMPLES);
+        for k in 0..LAW_SAMPLES {
+            let t = k as f64 / (LAW_SAMPLES - 1) as f64;
+            let pressure_pa = full * (0.1 + 0.9 * t).powi(4);
+            let separation_m = if k + 1 < LAW_SAMPLES {
+                self.half_space_at(pressure_pa)?.mean_separation
+            } else {
+                0.0
+            };
+            rows.push(LawRow {
+                waves,
+                realisation,
+                speed_mm_s,
+                touch_separation_m,
+                pressure_pa,
+                separation_m,
+            });
+        }
+        Ok((law_of(&rows)?, rows))
+    }
+
+    /// Samples from the first contact that the mesh resolves up to `largest` in Pa, or as far as
+    /// there are solutions, with a warning then.
+    pub fn sample(&mut self, largest: f64) -> Result<(Vec<SampleRow>, Option<String>), SolveError> {
+        let first = self.first_pressure(largest)?;
+        let mut rows: Vec<SampleRow> = Vec::new();
+        let mut warning = None;
+        for pressure in geometric(first, MARGIN * largest.max(first), FIRST_RATIO) {
+            match self.row(pressure) {
+                Ok(row) => rows.push(row),
+                Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. }))
+                    if !rows.is_empty() =>
+                {
+                    rows.extend(self.last_on_path(&error, &rows));
+                    let Task { waves, speed_mm_s, .. } = self.task;
+                    warning = Some(format!(
+                        "{waves} waves, {speed_mm_s} mm/s: the microscale is sampled up to {:.3} \
+                         MPa of {:.3}: {error}",
+                        rows[rows.len() - 1].pressure_mpa,
+                        largest / 1e6
+                    ));
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        for _ in 0..MOST_ROUNDS {
+            let more = self.refined(&mut rows);
+            if more.is_empty() {
+                break;
+            }
+            for pressure in more {
+                // What cannot be solved between two solutions stays the error that it is.
+                match self.row(pressure) {
+                    Ok(row) => rows.push(row),
+                    Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
+                    Err(error) => return Err(error),
+                }
+            }
+            rows.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
+        }
+        self.refined(&mut rows);
+        Ok((rows, warning))
+    }
+
+    /// The last point of a path that ended, if it is beyond the samples and is solved again.
+    fn last_on_path(&mut self, error: &FemError, rows: &[SampleRow]) -> Option<SampleRow> {
+        let FemError::PathEnded { reached: PathEnd::At { pressure, .. }, .. } = error else {
+            return None;
+        };
+        let beyond = *pressure > 1.05e6 * rows[rows.len() - 1].pressure_mpa;
+        beyond.then(|| self.row(*pressure).ok()).flatten()
+    }
+
+    /// Writes the errors into the rows and returns the pressures in Pa that should be added.
+    fn refined(&self, rows: &mut [SampleRow]) -> Vec<f64> {
+        let pressures: Vec<f64> = rows.iter().map(|row| row.pressure_mpa * 1e6).collect();
+        let corrections: Vec<f64> = rows.iter().map(SampleRow::correction).collect();
+        let friction = rows.iter().map(|row| row.friction_half_space).fold(0.0, f64::max);
+        for (row, error) in rows.iter_mut().zip(interpolation_errors(&pressures, &corrections)) {
+            row.interpolation_error = error;
+        }
+        refinement(&pressures, &[(&corrections, self.parameters.tolerance * friction)])
+    }
+
+    /// The smallest pressure at which enough elements touch, found on the half-space.
+    fn first_pressure(&mut self, largest: f64) -> Result<f64, SolveError> {
+        let wanted = FEWEST_CONTACT_ELEMENTS / self.columns as f64;
+        let (mut low, mut high) = (1e-6 * largest, largest);
+        if self.half_space_at(high)?.contact_area_fraction <= wanted {
+            return Ok(largest);
+        }
+        while high > 1.02 * low {
+            let middle = (low * high).sqrt();
+            if self.half_space_at(middle)?.contact_area_fraction < wanted {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(high)
+    }
+
+    fn row(&mut self, pressure: f64) -> Result<SampleRow, SolveError> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(SolveError::Interrupted);
+        }
+        let Task { waves, realisation, speed_mm_s, .. } = *self.task;
+        let key = self.key(pressure);
+        if let Some(row) = self.store.get::<SampleRow>(&key)? {
+            return Ok(SampleRow { waves, realisation, ..row });
+        }
+        let half_space = self.half_space_at(pressure)?;
+        let start = Instant::now();
+        let block = self.block()?.solve(pressure)?;
+        let row = SampleRow {
+            waves,
+            realisation,
+            speed_mm_s,
+            pressure_mpa: pressure / 1e6,
+            friction_half_space: half_space.friction_coefficient,
+            friction_finite_deformation: block.friction_coefficient,
+            friction_from_heat: block.hysteretic_friction,
+            area_half_space: half_space.contact_area_fraction,
+            area_finite_deformation: block.contact_area_fraction,
+            separation_half_space_mm: half_space.mean_separation * 1e3,
+            separation_finite_deformation_mm: block.mean_separation * 1e3,
+            interpolation_error: 0.0,
+            residual: block.residual,
+            newton_steps: block.newton_steps as u64,
+            seconds: start.elapsed().as_secs_f64(),
+        };
+        self.store.put(&key, &row)?;
+        Ok(row)
+    }
+
+    fn heights(&self) -> Vec<f64> {
+        let shortest = self.task.micro.iter().map(|wave| wave.wavelength);
+        let shortest = shortest.fold(self.period, f64::min);
+        let points = (POINTS_PER_WAVE * self.period / shortest).round() as usize;
+        wave::sample(&self.task.micro, self.period, points.next_power_of_two())
+    }
+
+    fn half_space(&mut self) -> Result<&mut SlidingContact, SolveError> {
+        let contact = match self.half_space.take() {
+            Some(contact) => contact,
+            None => {
+                let speed = self.task.speed_mm_s / 1e3;
+                SlidingContact::new(self.rubber, speed, self.period, &self.heights())?
+            }
+        };
+        Ok(self.half_space.insert(contact))
+    }
+
+    fn half_space_at(&mut self, pressure: f64) -> Result<ContactSolution, SolveError> {
+        Ok(self.half_space()?.solve(pressure)?)
+    }
+
+    fn block(&mut self) -> Result<&mut SteadyContact, SolveError> {
+        let block = match self.block.take() {
+            Some(block) => block,
+            None => {
+                let speed = self.task.speed_mm_s / 1e3;
+                let profile = RigidProfile::from_waves(&self.task.micro, self.period);
+                let options = BlockOptions::new(self.columns);
+                SteadyContact::new(self.rubber, Rheology::NeoHookean, speed, profile, options)?
+            }
+        };
+        Ok(self.block.insert(block))
+    }
+
+    /// Digest of all that determines a sample.
+    fn key(&self, pressure: f64) -> Digest {
+        let micro: &[Wave] = &self.task.micro;
+        Digest::of_value(&json!({
+            "solver": ["micro", SOLVER_REVISION],
+            "equilibrium_modulus": self.rubber.equilibrium_modulus,
+            "branches": self.rubber.branches,
+            "poisson_ratio": self.rubber.poisson_ratio,
+            "profile": micro,
+            "speed_mm_s": self.task.speed_mm_s,
+            "pressure": pressure,
+            "columns": self.columns,
+        }))
+    }
+}
+
+impl SampleRow {
+    /// What finite deformation changes of the friction.
+    pub fn correction(&self) -> f64 {
+        self.friction_finite_deformation - self.friction_half_space
+    }
+}
+
+/// The law of the rows of one microscale and speed.
+pub(crate) fn law_of(rows: &[LawRow]) -> Result<LocalLaw, SolveError> {
+    let touch = rows.first().map_or(0.0, |row| row.touch_separation_m);
+    let pressures: Vec<f64> = rows.iter().map(|row| row.pressure_pa).collect();
+    let separations: Vec<f64> = rows.iter().map(|row| row.separation_m).collect();
+    Ok(LocalLaw::new(touch, &pressures, &separations, LawEnd::FullContact)?)
+}
