@@ -3,7 +3,9 @@
 
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
-use crate::stages::{approximate, bem, characterise, ingest, realise, sinusoid, tables};
+use crate::stages::{
+    approximate, bem, characterise, fem, hybrid, ingest, micro, realise, sinusoid, tables,
+};
 use schemars::schema_for;
 use serde_json::Value;
 
@@ -31,8 +33,15 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<bem::SolveRow>()?,
         table::<bem::CurveRow>()?,
         arrays(&bem::fields_schema()),
+        table::<micro::SampleRow>()?,
+        table::<micro::LawRow>()?,
+        table::<hybrid::HybridRow>()?,
+        table::<hybrid::LocalRow>()?,
+        table::<fem::FemCurveRow>()?,
+        table::<fem::FemSolveRow>()?,
         table::<tables::FrictionRow>()?,
         table::<tables::ComparisonRow>()?,
+        table::<tables::ModelRow>()?,
         table::<sinusoid::PointRow>()?,
         table::<sinusoid::AsymptoteRow>()?,
         table::<sinusoid::FieldRow>()?,

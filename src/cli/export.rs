@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::output::{print, write_file};
-use crate::artifact::{RunView, write_csv, write_parquet};
+use crate::artifact::{RunView, data_frame as data_frame_of, write_csv, write_parquet};
 use crate::report::{
     FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
     markdown,
@@ -25,6 +25,8 @@ Examples:
     asperity export runs/asphalt --format latex --to friction.tex
     asperity export runs/asphalt --format parquet --to friction.parquet
     asperity export runs/asphalt --format svg --to friction.svg
+  The local corrections of the hybrid method, one by one:
+    asperity export runs/asphalt --table hybrid/local --format csv --to local.csv
   The study of one sine wave as a document, a figure and one CSV file for each table:
     asperity export runs/sinusoid --format markdown --to study.md
     asperity export runs/sinusoid --format svg --to study.svg
@@ -43,6 +45,9 @@ pub(super) struct Export {
     /// The computed tables beside the published ones that the recipe names, as a Markdown document.
     #[arg(long)]
     comparison: bool,
+    /// Any one table of the run, such as hybrid/local, as csv or parquet.
+    #[arg(long, value_name = "STAGE/TABLE", conflicts_with_all = ["comparison", "waves", "speed"])]
+    table: Option<String>,
     /// File to write, or for several CSV tables the folder; standard output if not given.
     #[arg(long, value_name = "PATH")]
     to: Option<PathBuf>,
@@ -79,6 +84,9 @@ impl Export {
             )));
         }
         let view = RunView::of(&self.run);
+        if let Some(table) = &self.table {
+            return self.one_table(&view, table);
+        }
         if view.stage_manifest("sinusoid").map_err(CliError::input)?.is_some() {
             return self.study(&view);
         }
@@ -115,6 +123,38 @@ impl Export {
         }
     }
 
+    /// A table of the run as it is.
+    fn one_table(&self, view: &RunView, table: &str) -> Result<(), CliError> {
+        let (stage, name) = table.split_once('/').ok_or_else(|| {
+            CliError::input(format!("--table {table}: give a stage and a table, as hybrid/local"))
+        })?;
+        let file = format!("{}.arrow", name.trim_end_matches(".arrow"));
+        let manifest = view.stage_manifest(stage).map_err(CliError::input)?;
+        let outputs: Vec<String> =
+            manifest.into_iter().flat_map(|m| m.outputs).map(|output| output.file).collect();
+        if !outputs.contains(&file) {
+            return Err(CliError::input(format!(
+                "{}: stage {stage} has no table {name}; it has [{}]",
+                self.run.display(),
+                outputs.join(", ")
+            )));
+        }
+        let mut frame = data_frame_of(&view.file(stage, &file)).map_err(CliError::input)?;
+        match (self.format, &self.to) {
+            (Format::Csv, None) => print(&csv_text(&mut frame)?),
+            (Format::Csv, Some(path)) => {
+                self.by_rename(path, |temporary| write_csv(&mut frame, temporary))
+            }
+            (Format::Parquet, Some(path)) => {
+                self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
+            }
+            (Format::Parquet, None) => {
+                Err(CliError::input("Parquet is binary: give a file with --to"))
+            }
+            _ => Err(CliError::input("a single table is exported as csv or parquet")),
+        }
+    }
+
     fn comparison(&self, view: &RunView, rows: &[FrictionRow]) -> Result<(), CliError> {
         if self.format != Format::Markdown {
             return Err(CliError::input("a comparison is a document: give --format markdown"));
@@ -143,12 +183,7 @@ impl Export {
 
     fn csv(&self, tables: &[FrictionTable]) -> Result<(), CliError> {
         match (&self.to, tables) {
-            (None, [table]) => {
-                let folder = tempfile::tempdir().map_err(CliError::failure)?;
-                let path = folder.path().join("table.csv");
-                write_csv(&mut published(table)?, &path).map_err(CliError::failure)?;
-                print(&std::fs::read_to_string(path).map_err(CliError::failure)?)
-            }
+            (None, [table]) => print(&csv_text(&mut published(table)?)?),
             (None, _) => Err(CliError::input(format!(
                 "there are {} tables: give a folder with --to, or choose one with --waves and \
                  --speed",
@@ -184,6 +219,13 @@ impl Export {
         let bytes = std::fs::read(&temporary).map_err(CliError::failure)?;
         write_file(path, self.force, |out| out.write_all(&bytes))
     }
+}
+
+fn csv_text(frame: &mut polars::prelude::DataFrame) -> Result<String, CliError> {
+    let folder = tempfile::tempdir().map_err(CliError::failure)?;
+    let path = folder.path().join("table.csv");
+    write_csv(frame, &path).map_err(CliError::failure)?;
+    std::fs::read_to_string(path).map_err(CliError::failure)
 }
 
 /// The table with the columns of the published ones and the interval.

@@ -117,6 +117,20 @@ impl Microscale {
     }
 }
 
+/// Local mean pressures: the pressures of a periodic macro grid, averaged over `points` of them
+/// about each. The law and the friction of the microscale belong to a mean over one period of it;
+/// what the macro contact resolves below that means nothing.
+pub fn running_mean(pressures: &[f64], points: usize) -> Vec<f64> {
+    let n = pressures.len();
+    let points = points.clamp(1, n);
+    let first = |i: usize| (i + n - points / 2) % n;
+    let mean = |i: usize| {
+        let window = (0..points).map(|k| pressures[(first(i) + k) % n]);
+        window.sum::<f64>() / points as f64
+    };
+    (0..n).map(mean).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,6 +162,15 @@ mod tests {
         assert!(microscale.friction(0.9).is_none() && microscale.friction(8.1).is_none());
         let (half_space, finite) = microscale.friction(8.0).unwrap();
         assert_relative_eq!(finite - half_space, 0.1 + 0.1 * 8.0_f64.ln(), max_relative = 1e-12);
+    }
+
+    #[test]
+    fn running_means_keep_the_load() {
+        let pressures = [0.0, 3.0, 0.0, 0.0, 6.0];
+        let mean = running_mean(&pressures, 3);
+        assert_eq!(mean, [3.0, 1.0, 1.0, 2.0, 2.0]);
+        assert_eq!(running_mean(&pressures, 1), pressures);
+        assert_relative_eq!(running_mean(&pressures, 4).iter().sum::<f64>(), 9.0);
     }
 
     #[test]

@@ -12,7 +12,7 @@ use super::micro::{LAW_FILE, LawRow, Micro, SAMPLES_FILE, SampleRow, law_of};
 use super::realise::{Surface, read_surfaces};
 use super::{Context, SolveError, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
-use crate::multiscale::correction::{Correction, MeanRule, Microscale};
+use crate::multiscale::correction::{Correction, MeanRule, Microscale, running_mean};
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{LawEnd, LocalLaw, SoftContact, SoftContactSolution};
 use crate::rubber::Rubber;
@@ -31,6 +31,19 @@ pub struct Hybrid {
     pub mean: MeanRule,
     /// Whose separation over pressure the macro surface meets.
     pub law: RepulsiveLaw,
+    /// Which pressures of the macro surface the microscale is asked at.
+    pub local_pressures: LocalPressures,
+}
+
+/// The pressures at which the microscale is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LocalPressures {
+    /// Those of the points of the macro grid.
+    #[default]
+    Points,
+    /// Their means over one period of the microscale about each point.
+    Periods,
 }
 
 /// The model that gives the repulsive law.
@@ -224,7 +237,14 @@ fn one_surface(
         for curve in at_one_speed {
             let solution =
                 contact.solve(curve.pressure_mpa * 1e6).map_err(|error| failed(error.into()))?;
-            rows.push(corrected(parameters, curve, &microscale, &solution));
+            let local = match parameters.local_pressures {
+                LocalPressures::Points => solution.pressure.clone(),
+                LocalPressures::Periods => {
+                    let points = cell / period * solution.pressure.len() as f64;
+                    running_mean(&solution.pressure, points.round() as usize)
+                }
+            };
+            rows.push(corrected(parameters, curve, &microscale, &local, solution.residual));
             locals.extend(local_rows(curve, &microscale, &solution, period, cell));
         }
     }
@@ -277,24 +297,25 @@ fn corrected(
     parameters: &Hybrid,
     curve: &CurveRow,
     microscale: &Microscale,
-    solution: &SoftContactSolution,
+    local: &[f64],
+    residual: f64,
 ) -> HybridRow {
-    let correction = microscale.correction(&solution.pressure).ok();
+    let correction = microscale.correction(local).ok();
     let chosen = |correction: &Correction| match parameters.mean {
         MeanRule::Force => correction.force,
         MeanRule::Points => correction.points,
     };
-    let points = solution.pressure.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
+    let points = local.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
     HybridRow {
         friction_coefficient: correction.as_ref().map(|c| curve.friction_coefficient + chosen(c)),
         correction_points: correction.as_ref().map(|c| c.points),
         correction_force: correction.as_ref().map(|c| c.force),
         correction_of_area: correction.as_ref().map(|c| c.area),
         interpolation_error: curve.interpolation_error + microscale.interpolation_error(),
-        contact_points_fraction: points as f64 / solution.pressure.len() as f64,
-        largest_pressure_mpa: solution.pressure.iter().copied().fold(0.0, f64::max) / 1e6,
+        contact_points_fraction: points as f64 / local.len() as f64,
+        largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max) / 1e6,
         largest_sample_mpa: microscale.largest_pressure() / 1e6,
-        residual: solution.residual,
+        residual,
         ..uncorrected(curve)
     }
 }

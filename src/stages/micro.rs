@@ -302,7 +302,7 @@ fn largest_pressure(
         let speed = task.speed_mm_s / 1e3;
         let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?;
         let solution = contact.solve(mean)?;
-        largest = solution.pressure.iter().copied().fold(largest, f64::max);
+        largest = solution.pressure.into_iter().fold(largest, f64::max);
     }
     Ok(largest)
 }

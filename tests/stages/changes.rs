@@ -1,6 +1,6 @@
 //! What a change of the recipe, the rubber or a scan makes stale, and what it does not.
 
-use super::{Campaign, digests, recipe, run, stale, try_run};
+use super::{Campaign, STAGES, digests, recipe, run, stale, try_run};
 use asperity::pipeline::Selection;
 use asperity::stages::Stage::{self, Approximate, Bem, Characterise, Ingest, Realise, Tables};
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ fn a_second_run_computes_nothing() {
     let campaign = Campaign::new();
     let (recipe, out) = (recipe(&campaign), campaign.path("out"));
     assert_eq!(stale(&recipe, &out).len(), 6);
-    assert_eq!(run(&recipe, &out), Stage::CHAIN);
+    assert_eq!(run(&recipe, &out), STAGES);
     let (first, files) = (digests(&out), solves(&out));
     assert_eq!(stale(&recipe, &out), []);
     assert_eq!(run(&recipe, &out), []);
@@ -142,7 +142,7 @@ fn each_change_makes_the_right_stages_stale_for_the_right_reason() {
         let found = stale(&recipe(&campaign), &out);
         campaign.write(file, &before);
         let stages: Vec<_> = found.iter().map(|(stage, _)| *stage).collect();
-        let expected: Vec<_> = Stage::CHAIN.into_iter().filter(|stage| *stage >= first).collect();
+        let expected: Vec<_> = STAGES.into_iter().filter(|stage| *stage >= first).collect();
         assert_eq!(stages, expected, "{file}: {to}");
         assert!(found[0].1.starts_with(reason), "{reason}: found {}", found[0].1);
         let inherited = format!("{first} is stale");
@@ -190,5 +190,5 @@ fn a_selected_stage_with_stale_inputs_says_what_to_do() {
     assert_eq!(try_run(&recipe, &out, only(Ingest)).unwrap(), [Ingest]);
     let refused = try_run(&recipe, &out, from(Realise)).unwrap_err().to_string();
     assert!(refused.contains("with --from characterise"), "{refused}");
-    assert_eq!(try_run(&recipe, &out, from(Characterise)).unwrap(), Stage::CHAIN[1..]);
+    assert_eq!(try_run(&recipe, &out, from(Characterise)).unwrap(), STAGES[1..]);
 }

@@ -1,6 +1,6 @@
 //! Run folders that something happened to.
 
-use super::{Campaign, digests, recipe, run, stale};
+use super::{Campaign, STAGES, digests, recipe, run, stale};
 use asperity::artifact::{RunFolder, RunView};
 use asperity::stages::Stage;
 use std::fs;
@@ -12,7 +12,7 @@ fn outputs(out: &Path) -> Vec<(Stage, String)> {
         let manifest = view.stage_manifest(stage.name()).unwrap().unwrap();
         manifest.outputs.into_iter().map(move |output| (stage, output.file)).collect::<Vec<_>>()
     };
-    Stage::CHAIN.into_iter().flat_map(files).collect()
+    STAGES.into_iter().flat_map(files).collect()
 }
 
 /// What happens to the bytes of a file.

@@ -8,6 +8,7 @@ mod bem;
 mod changes;
 mod damage;
 mod golden;
+mod hybrid;
 mod interruption;
 mod scans;
 mod schemas;
@@ -22,6 +23,16 @@ use common::Campaign;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
+
+/// The stages of the small campaign, which is solved on the half-space alone.
+const STAGES: [Stage; 6] = [
+    Stage::Ingest,
+    Stage::Characterise,
+    Stage::Approximate,
+    Stage::Realise,
+    Stage::Bem,
+    Stage::Tables,
+];
 
 fn recipe(campaign: &Campaign) -> Recipe {
     Recipe::read(&campaign.path("recipe.toml")).unwrap()

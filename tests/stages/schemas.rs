@@ -1,9 +1,9 @@
 //! The committed schemas, and that the files are as they say.
 
-use super::{Campaign, recipe, run};
+use super::{Campaign, STAGES, recipe, run};
 use asperity::artifact::{ArraysSchema, Attribute, RunView, arrays_info, check_or_write};
 use asperity::schemas::documents;
-use asperity::stages::{Stage, bem, ingest};
+use asperity::stages::{bem, ingest};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn the_committed_schemas_are_those_of_the_program() {
 fn every_output_of_a_run_has_a_schema() {
     let (_campaign, view) = run_with_fields();
     let names: BTreeSet<String> = documents().unwrap().into_iter().map(|(name, _)| name).collect();
-    for stage in Stage::CHAIN {
+    for stage in STAGES {
         for output in view.stage_manifest(stage.name()).unwrap().unwrap().outputs {
             let name = format!("{}.v{}", output.schema, output.schema_version);
             assert!(names.contains(&name), "{stage}/{}: {name}", output.file);

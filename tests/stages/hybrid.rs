@@ -1,0 +1,205 @@
+//! micro, hybrid, fem and the tables of several models, against contacts solved one by one.
+
+use super::{Campaign, recipe, run, stale, try_run};
+use asperity::artifact::RunView;
+use asperity::fem::profile::RigidProfile;
+use asperity::fem::steady::{BlockOptions, SteadyContact};
+use asperity::multiscale::{LawEnd, LocalLaw, SoftContact};
+use asperity::pipeline::Selection;
+use asperity::recipe::Recipe;
+use asperity::rubber::{Rheology, read_rubber};
+use asperity::schemas::documents;
+use asperity::stages::Stage;
+use asperity::stages::bem::{CURVES_FILE, CurveRow};
+use asperity::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};
+use asperity::stages::hybrid::{HYBRID_FILE, HybridRow, LOCAL_FILE, LocalRow};
+use asperity::stages::micro::{LAW_FILE, LawRow, SAMPLES_FILE, SampleRow};
+use asperity::stages::realise::read_surfaces;
+use asperity::stages::tables::{FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow};
+use asperity::surface::{Wave, wave};
+use std::path::Path;
+
+const COLUMNS: usize = 48;
+
+/// A steep wave on a gentle one, few columns.
+fn campaign(steep_mm: f64, extra: &str) -> Campaign {
+    let campaign = Campaign::new();
+    campaign.write(
+        "recipe.toml",
+        &format!(
+            r#"
+            title = "A steep wave on a gentle one"
+            [[approximate.given]]
+            source = "a test"
+            scales = [
+                {{ wavelength_mm = 0.0625, amplitude_mm = {steep_mm} }},
+                {{ wavelength_mm = 0.25, amplitude_mm = 0.01 }},
+            ]
+            [realise]
+            waves = [2]
+            realisations = 2
+            seed = 5
+            [bem]
+            rubber = "rubber.toml"
+            speeds_mm_s = [20.0]
+            area_fractions = [0.03, 0.06]
+            tolerance = 1e-3
+            [micro]
+            columns_per_shortest_wavelength = {COLUMNS}
+            tolerance = 5e-3
+            {extra}
+            "#
+        ),
+    );
+    campaign
+}
+
+fn solved(campaign: &Campaign) -> (Recipe, RunView) {
+    let recipe = recipe(campaign);
+    let out = campaign.path("out");
+    run(&recipe, &out);
+    (recipe, RunView::of(out))
+}
+
+#[test]
+fn the_microscale_is_solved_over_the_pressures_that_the_macro_contact_asks_for() {
+    let campaign = campaign(0.016, "");
+    let (recipe, view) = solved(&campaign);
+    let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
+    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let wave = Wave { wavelength: 6.25e-5, amplitude: 1.6e-5, phase: 0.0 };
+    let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
+    let options = BlockOptions::new(COLUMNS);
+    let middle = &samples[samples.len() / 2];
+    let mut block =
+        SteadyContact::new(&rubber, Rheology::NeoHookean, 0.02, profile, options).unwrap();
+    let solution = block.solve(middle.pressure_mpa * 1e6).unwrap();
+    // Another path to the same solution, rows slanted by up to a tenth less.
+    let difference = solution.friction_coefficient - middle.friction_finite_deformation;
+    assert!(difference.abs() < 2e-3 * solution.friction_coefficient, "{difference}");
+    assert!(samples.iter().all(|row| row.residual <= 1e-8));
+    assert!(samples.iter().all(|row| row.realisation == 0), "one wave, one curve");
+    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let asked = rows.iter().map(|row| row.largest_pressure_mpa).fold(0.0, f64::max);
+    assert!(samples[samples.len() - 1].pressure_mpa >= asked);
+}
+
+#[test]
+fn the_correction_is_the_mean_over_the_macro_contact() {
+    let campaign = campaign(0.016, "[hybrid]\nmean = \"points\"");
+    let (recipe, view) = solved(&campaign);
+    let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
+    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let (laws, _) = view.read_table::<LawRow>("micro", LAW_FILE).unwrap();
+    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    assert_eq!(rows.len(), curves.len());
+    let surface = &read_surfaces(&view).unwrap()[1];
+    let law = LocalLaw::new(
+        laws[0].touch_separation_m,
+        &laws.iter().map(|row| row.pressure_pa).collect::<Vec<_>>(),
+        &laws.iter().map(|row| row.separation_m).collect::<Vec<_>>(),
+        LawEnd::FullContact,
+    )
+    .unwrap();
+    let heights = wave::sample(&surface.profile[1..], 2.5e-4, 32);
+    let mut contact = SoftContact::new(&rubber, 0.02, 2.5e-4, &heights, law).unwrap();
+    let row = rows.iter().rfind(|row| row.realisation == 2).unwrap();
+    let solution = contact.solve(row.pressure_mpa * 1e6).unwrap();
+    // Straight lines between the samples, an oracle as good as the samples are dense.
+    let change = |p: f64| {
+        let above = samples.iter().position(|s| s.pressure_mpa * 1e6 > p).unwrap_or(1).max(1);
+        let (a, b) = (&samples[above - 1], &samples[above]);
+        let at = |s: &SampleRow| s.friction_finite_deformation - s.friction_half_space;
+        let t = (p / 1e6 / a.pressure_mpa).ln() / (b.pressure_mpa / a.pressure_mpa).ln();
+        at(a) + t.clamp(0.0, 1.0) * (at(b) - at(a))
+    };
+    let smallest = samples[0].pressure_mpa * 1e6;
+    let pressed = || solution.pressure.iter().copied().filter(|p| *p > 0.0);
+    let force = pressed().map(|p| p * change(p)).sum::<f64>() / pressed().sum::<f64>();
+    let points: Vec<f64> = pressed().filter(|p| *p >= smallest).map(change).collect();
+    let points = points.iter().sum::<f64>() / points.len() as f64;
+    assert!((row.correction_force.unwrap() - force).abs() < 5e-3, "{row:?} {force}");
+    assert!((row.correction_points.unwrap() - points).abs() < 5e-3, "{row:?} {points}");
+    assert!(force.abs() > 0.02, "a correction that matters");
+    let corrected = row.friction_half_space + row.correction_points.unwrap();
+    assert_eq!(row.friction_coefficient, Some(corrected));
+    let (locals, _) = view.read_table::<LocalRow>("hybrid", LOCAL_FILE).unwrap();
+    for local in &locals {
+        let sum = local.friction_half_space + local.correction;
+        assert!((sum - local.friction_finite_deformation).abs() < 1e-12);
+    }
+    assert!(!locals.is_empty());
+}
+
+#[test]
+fn the_tables_have_every_model_and_how_far_they_are_apart() {
+    let campaign = campaign(0.016, "[fem]\ncolumns_per_shortest_wavelength = 24");
+    let (_, view) = solved(&campaign);
+    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let of = |model: &str| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
+    for model in ["bem", "hybrid", "fem"] {
+        assert_eq!(of(model).len(), 2, "{model}");
+    }
+    let (models, _) = view.read_table::<ModelRow>("tables", MODELS_FILE).unwrap();
+    let hybrid = models.iter().find(|r| r.model == "hybrid" && r.reference == "fem").unwrap();
+    let pairs = of("hybrid").into_iter().zip(of("fem"));
+    let by_hand = pairs.map(|(a, b)| (a.mean / b.mean - 1.0).abs()).sum::<f64>() / 2.0;
+    assert!((hybrid.relative_error_of_averages - by_hand).abs() < 1e-12);
+    let (solves, _) = view.read_table::<FemSolveRow>("fem", FEM_SOLVES_FILE).unwrap();
+    assert!(solves.iter().all(|row| row.residual <= 1e-8 && row.columns == 96));
+    let kinds: Vec<String> = documents().unwrap().into_iter().map(|(name, _)| name).collect();
+    for stage in ["micro", "hybrid", "fem", "tables"] {
+        for output in view.stage_manifest(stage).unwrap().unwrap().outputs {
+            let name = format!("{}.v{}", output.schema, output.schema_version);
+            assert!(kinds.contains(&name), "{stage}/{}: {name}", output.file);
+        }
+    }
+}
+
+#[test]
+fn gentle_waves_need_no_correction() {
+    let campaign = campaign(0.005, "");
+    let (_, view) = solved(&campaign);
+    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    assert!(rows.iter().all(|row| row.friction_coefficient == Some(row.friction_half_space)));
+    let manifest = view.stage_manifest("micro").unwrap().unwrap();
+    assert!(manifest.warnings[0].contains("micro.rms_slope_threshold"), "{manifest:?}");
+}
+
+#[test]
+fn nothing_is_left_without_a_macro_surface() {
+    let campaign = campaign(0.016, "rms_slope_threshold = 0.1");
+    let error = try_run(&recipe(&campaign), &campaign.path("out"), Selection::default());
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("raise micro.rms_slope_threshold"), "{error}");
+}
+
+#[test]
+fn a_correction_without_a_microscale_is_refused() {
+    let text = campaign(0.016, "[hybrid]").read("recipe.toml");
+    let start = text.find("[micro]").unwrap();
+    let end = text.find("[hybrid]").unwrap();
+    let without = format!("{}{}", &text[..start], &text[end..]);
+    let error = Recipe::parse(&without, Path::new("recipe.toml")).unwrap_err().to_string();
+    assert!(error.contains("[hybrid] without [micro]"), "{error}");
+}
+
+#[test]
+fn only_the_correction_is_made_anew_when_its_rule_changes() {
+    let campaign = campaign(0.016, "");
+    let (_, view) = solved(&campaign);
+    let text = campaign.read("recipe.toml") + "\n[hybrid]\nmean = \"points\"\n";
+    campaign.write("recipe.toml", &text);
+    let changed = recipe(&campaign);
+    let out = campaign.path("out");
+    let stale = stale(&changed, &out);
+    assert_eq!(stale[0].0, Stage::Hybrid, "{stale:?}");
+    assert!(stale[0].1.contains("mean"), "{stale:?}");
+    assert_eq!(run(&changed, &out), [Stage::Hybrid, Stage::Tables]);
+    // Solves of the microscale are kept one by one.
+    std::fs::remove_dir_all(out.join("micro")).unwrap();
+    run(&changed, &out);
+    let again = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap().0;
+    assert!(again.iter().all(|row| row.residual <= 1e-8));
+}
