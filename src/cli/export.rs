@@ -13,7 +13,9 @@ use crate::report::{
     FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
     markdown,
 };
-use crate::stages::tables::{COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, NOTE_KEY};
+use crate::stages::tables::{
+    COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, Model, NOTE_KEY,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,7 +48,7 @@ pub(super) struct Export {
     #[arg(long)]
     comparison: bool,
     /// Any one table of the run, such as hybrid/local, as csv or parquet.
-    #[arg(long, value_name = "STAGE/TABLE", conflicts_with_all = ["comparison", "waves", "speed"])]
+    #[arg(long, value_name = "STAGE/TABLE", conflicts_with_all = ["comparison", "model", "waves", "speed"])]
     table: Option<String>,
     /// File to write, or for several CSV tables the folder; standard output if not given.
     #[arg(long, value_name = "PATH")]
@@ -57,6 +59,9 @@ pub(super) struct Export {
     /// Only this speed in mm/s.
     #[arg(long, value_name = "MM_S")]
     speed: Option<f64>,
+    /// Only this contact model.
+    #[arg(long, value_enum)]
+    model: Option<Model>,
     /// Overwrite files that are there already.
     #[arg(long)]
     force: bool,
@@ -97,13 +102,14 @@ impl Export {
         }
         let rows: Vec<FrictionRow> = rows
             .into_iter()
+            .filter(|row| self.model.is_none_or(|model| model.name() == row.model))
             .filter(|row| self.waves.is_none_or(|waves| waves == row.waves))
             .filter(|row| self.speed.is_none_or(|speed| speed == row.speed_mm_s))
             .collect();
         if rows.is_empty() {
             return Err(CliError::input(format!(
-                "{} has no table of that number of waves and speed: leave --waves or --speed out \
-                 to see all",
+                "{} has no table of that model, number of waves and speed: leave --model, --waves \
+                 or --speed out to see all",
                 self.run.display()
             )));
         }
@@ -185,8 +191,8 @@ impl Export {
         match (&self.to, tables) {
             (None, [table]) => print(&csv_text(&mut published(table)?)?),
             (None, _) => Err(CliError::input(format!(
-                "there are {} tables: give a folder with --to, or choose one with --waves and \
-                 --speed",
+                "there are {} tables: give a folder with --to, or choose one with --model, \
+                 --waves and --speed",
                 tables.len()
             ))),
             (Some(path), [table]) if path.extension().is_some() => {

@@ -14,7 +14,9 @@ use super::{Context, SolveError, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::multiscale::correction::{Correction, MeanRule, Microscale, running_mean};
 use crate::multiscale::scales::Scales;
-use crate::multiscale::{LawEnd, LocalLaw, SoftContact, SoftContactSolution};
+use crate::multiscale::{
+    LawEnd, LawError, LocalLaw, SoftContact, SoftContactError, SoftContactSolution,
+};
 use crate::rubber::Rubber;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -235,8 +237,18 @@ fn one_surface(
         let mut contact = SoftContact::new(rubber, speed_mm_s / 1e3, period, &heights, law)
             .map_err(|error| failed(error.into()))?;
         for curve in at_one_speed {
-            let solution =
-                contact.solve(curve.pressure_mpa * 1e6).map_err(|error| failed(error.into()))?;
+            let solution = match contact.solve(curve.pressure_mpa * 1e6) {
+                Ok(solution) => solution,
+                // Pressed harder than the law goes: no correction, and no end of the others.
+                Err(SoftContactError::Law {
+                    source: LawError::BeyondSamples { pressure, largest },
+                    ..
+                }) => {
+                    rows.push(beyond(curve, pressure, largest));
+                    continue;
+                }
+                Err(error) => return Err(failed(error.into())),
+            };
             let local = match parameters.local_pressures {
                 LocalPressures::Points => solution.pressure.clone(),
                 LocalPressures::Periods => {
@@ -316,6 +328,19 @@ fn corrected(
         largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max) / 1e6,
         largest_sample_mpa: microscale.largest_pressure() / 1e6,
         residual,
+        ..uncorrected(curve)
+    }
+}
+
+/// No correction, because a local pressure in Pa is beyond the largest one of the law.
+fn beyond(curve: &CurveRow, pressure: f64, largest: f64) -> HybridRow {
+    HybridRow {
+        friction_coefficient: None,
+        correction_points: None,
+        correction_force: None,
+        correction_of_area: None,
+        largest_pressure_mpa: pressure / 1e6,
+        largest_sample_mpa: largest / 1e6,
         ..uncorrected(curve)
     }
 }
