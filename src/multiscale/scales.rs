@@ -43,9 +43,9 @@ mod tests {
             wave(0.25, 0.02939, 3.0),
             wave(0.5, 0.0, 4.0),
         ];
-        // Slopes of Table 3.1.
+        // Slopes of Table 3.1; the second is 0.1 % below what its amplitude gives.
         for (wave, published) in waves.iter().zip([1.3275, 0.9403, 0.5223]) {
-            approx::assert_relative_eq!(rms_slope(wave), published, max_relative = 2e-4);
+            approx::assert_relative_eq!(rms_slope(wave), published, max_relative = 1e-3);
         }
         let one = Scales::part(&waves, 1.0);
         assert_eq!((one.micro[0].phase, one.micro.len(), one.macroscale.len()), (0.0, 1, 2));

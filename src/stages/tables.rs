@@ -1,11 +1,15 @@
 //! tables: friction over contact area, averaged over the realisations.
 
+mod models;
+
 use super::bem::{CURVES_FILE, CurveRow};
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
+use models::comparisons;
+pub use models::{MODELS_FILE, ModelRow};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -162,46 +166,6 @@ impl Row for ComparisonRow {
     const VERSION: u32 = 1;
 }
 
-/// How far the models of a run are apart: `models.arrow`, where it has more than the half-space.
-pub const MODELS_FILE: &str = "models.arrow";
-
-/// Relative difference of one model from another, averaged over contact areas (thesis 5.2.1,
-/// 5.4.4).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ModelRow {
-    /// Contact model.
-    pub model: String,
-    /// The model that it is measured by.
-    pub reference: String,
-    /// Number of waves of the approximation.
-    pub waves: u32,
-    /// Sliding speed.
-    #[schemars(extend("unit" = "mm/s"))]
-    pub speed_mm_s: f64,
-    /// Smallest contact area fraction that both have.
-    #[schemars(extend("unit" = "1"))]
-    pub from_area_fraction: f64,
-    /// Largest contact area fraction that both have.
-    #[schemars(extend("unit" = "1"))]
-    pub to_area_fraction: f64,
-    /// Number of contact areas that both have.
-    pub areas: u32,
-    /// Mean over the areas of `|μ - μ_ref| / μ_ref` of the averages over realisations.
-    #[schemars(extend("unit" = "1"))]
-    pub relative_error_of_averages: f64,
-    /// Mean over areas and realisations of `|μ - μ_ref| / μ_ref`.
-    #[schemars(extend("unit" = "1"))]
-    pub relative_error: f64,
-    /// Mean over the areas of `(μ - μ_ref) / μ_ref` of the averages over realisations.
-    #[schemars(extend("unit" = "1"))]
-    pub bias: f64,
-}
-
-impl Row for ModelRow {
-    const SCHEMA: &'static str = "asperity.tables.models";
-    const VERSION: u32 = 1;
-}
-
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     vec![schema_of::<FrictionRow>(), schema_of::<ComparisonRow>(), schema_of::<ModelRow>()]
@@ -247,12 +211,7 @@ pub fn run(
     }
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
     if models.hybrid || models.fem {
-        let pairs = [(BEM, FEM), (HYBRID, FEM), (BEM, HYBRID)];
-        let apart: Vec<ModelRow> = pairs
-            .into_iter()
-            .flat_map(|(model, reference)| apart(&rows, model, reference))
-            .collect();
-        context.pending.write_table(MODELS_FILE, &apart, &Metadata::new())?;
+        context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
     }
     if parameters.published.is_empty() {
         return Ok(Vec::new());
@@ -264,45 +223,6 @@ pub fn run(
     let metadata = Metadata::from([(NOTE_KEY.to_owned(), parameters.note.clone())]);
     context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
     Ok(Vec::new())
-}
-
-/// How far a model is from another, for each number of waves and speed.
-fn apart(rows: &[FrictionRow], model: &str, reference: &str) -> Vec<ModelRow> {
-    let of = |name: &str| rows.iter().filter(move |row| row.model == name).collect::<Vec<_>>();
-    let (model_rows, reference_rows) = (of(model), of(reference));
-    let same_table =
-        |a: &&FrictionRow, b: &&FrictionRow| a.waves == b.waves && a.speed_mm_s == b.speed_mm_s;
-    let counterpart = |row: &&FrictionRow| {
-        reference_rows.iter().copied().find(|other| {
-            same_table(row, other) && row.contact_area_fraction == other.contact_area_fraction
-        })
-    };
-    let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-    model_rows
-        .chunk_by(same_table)
-        .filter_map(|table| {
-            let pairs: Vec<(&FrictionRow, &FrictionRow)> =
-                table.iter().filter_map(|row| Some((*row, counterpart(row)?))).collect();
-            let ((first, _), (last, _)) = (pairs.first()?, pairs.last()?);
-            let relative = |a: f64, b: f64| (a - b) / b;
-            let averages = || pairs.iter().map(|(a, b)| relative(a.mean, b.mean));
-            let each = pairs.iter().flat_map(|(a, b)| {
-                a.realisations.iter().zip(&b.realisations).map(|(a, b)| relative(*a, *b).abs())
-            });
-            Some(ModelRow {
-                model: model.into(),
-                reference: reference.into(),
-                waves: first.waves,
-                speed_mm_s: first.speed_mm_s,
-                from_area_fraction: first.contact_area_fraction,
-                to_area_fraction: last.contact_area_fraction,
-                areas: pairs.len() as u32,
-                relative_error_of_averages: mean(averages().map(f64::abs).collect()),
-                relative_error: mean(each.collect()),
-                bias: mean(averages().collect()),
-            })
-        })
-        .collect()
 }
 
 /// The computed rows that the published table has too.
@@ -440,7 +360,7 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
 mod tests {
     use super::*;
 
-    fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> Value {
+    pub(super) fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> Value {
         Value {
             waves,
             realisation,
@@ -450,17 +370,6 @@ mod tests {
             friction_coefficient: friction,
             interpolation_error: friction / 1e3,
         }
-    }
-
-    #[test]
-    fn models_are_compared_where_both_have_a_value() {
-        let bem = vec![curve(8, 1, 0.05, 1.1), curve(8, 2, 0.05, 0.9), curve(8, 1, 0.1, 2.0)];
-        let fem = vec![curve(8, 1, 0.05, 1.0), curve(8, 2, 0.05, 1.0), curve(9, 1, 0.1, 2.0)];
-        let rows = [average(BEM, bem), average(FEM, fem)].concat();
-        let apart = apart(&rows, BEM, FEM);
-        assert_eq!((apart.len(), apart[0].areas, apart[0].to_area_fraction), (1, 1, 0.05));
-        approx::assert_relative_eq!(apart[0].relative_error, 0.1, max_relative = 1e-12);
-        assert!(apart[0].bias.abs() < 1e-15 && apart[0].relative_error_of_averages < 1e-15);
     }
 
     #[test]

@@ -235,7 +235,7 @@ fn exports_are_complete_or_refused() {
     assert!(export("recipe.toml --format csv").error(2).contains("give the folder of a run"));
     assert!(export("out --format xlsx").error(2).contains("csv, markdown, latex, parquet, svg"));
     assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).result(), "");
-    assert!(export("out --format csv --waves 9").error(2).contains("leave --waves or --speed out"));
+    assert!(export("out --format csv --waves 9").error(2).contains("or --speed out to see all"));
     assert!(export("out --format csv --speed 11").error(2).contains("no table"));
     assert!(export("out --format csv").error(2).contains("there are 2 tables"));
     assert!(export("out --format parquet").error(2).contains("--to"));

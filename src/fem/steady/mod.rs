@@ -197,7 +197,16 @@ impl SteadyContact {
         {
             return Ok(solution);
         }
-        Err(ended(last_converged(path, &self.scene, self.speed)))
+        match last_converged(path, &self.scene, self.speed) {
+            // What failed at first may succeed at the second attempt: rows are shifted on in parts.
+            Some(solution) if solution.mean_pressure == pressure => Ok(solution),
+            Some(solution) => Err(ended(PathEnd::At {
+                pressure: solution.mean_pressure,
+                friction_coefficient: solution.friction_coefficient,
+                contact_area_fraction: solution.contact_area_fraction,
+            })),
+            None => Err(ended(PathEnd::NotStarted)),
+        }
     }
 
     /// A path from a slight contact on the coarsest mesh to the finest one, as far towards the
@@ -260,19 +269,13 @@ fn read(
     }
 }
 
-/// The highest point of a path at which the exact solution converges too.
-fn last_converged(path: &mut Path, scene: &Scene, speed: f64) -> PathEnd {
+/// The exact solution at the highest point of a path at which it converges.
+fn last_converged(path: &mut Path, scene: &Scene, speed: f64) -> Option<SteadySolution> {
     loop {
         if let Ok(solution) = conclude(path, scene, speed) {
-            return PathEnd::At {
-                pressure: solution.mean_pressure,
-                friction_coefficient: solution.friction_coefficient,
-                contact_area_fraction: solution.contact_area_fraction,
-            };
+            return Some(solution);
         }
-        if path.step_back().is_none() {
-            return PathEnd::NotStarted;
-        }
+        path.step_back()?;
     }
 }
 
