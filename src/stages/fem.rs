@@ -170,7 +170,7 @@ pub fn run(
     context.pending.write_table(FEM_FILE, &curves, &none)?;
     let solves: Vec<_> = results.iter().flat_map(|result| result.solves.iter().cloned()).collect();
     context.pending.write_table(FEM_SOLVES_FILE, &solves, &none)?;
-    Ok(results.into_iter().filter_map(|result| result.warning).collect())
+    Ok(results.into_iter().flat_map(|result| result.warnings).collect())
 }
 
 /// Pressure in Pa of the smallest wanted area on the half-space.
@@ -205,7 +205,10 @@ fn one_curve(
     };
     let mut solver =
         Solver::new(parameters, rubber, surface, speed_mm_s, store, context).map_err(failed)?;
-    let ended = solver.sweep(&bem.area_fractions, guess).map_err(failed)?;
+    let ended = match solver.sweep(&bem.area_fractions, guess) {
+        Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => Some(error),
+        other => other.map_err(failed)?,
+    };
     let rows = solver.values(&bem.area_fractions);
     let missing = bem.area_fractions.len() - rows.len();
     let warning = (missing > 0).then(|| {
@@ -215,14 +218,19 @@ fn one_curve(
              areas are not reached: {why}"
         )
     });
-    Ok(CurveResult { rows, solves: solver.solves, warning })
+    let coarse = solver.coarse_mesh();
+    Ok(CurveResult {
+        rows,
+        solves: solver.solves,
+        warnings: warning.into_iter().chain(coarse).collect(),
+    })
 }
 
 /// The curve of one surface at one speed.
 struct CurveResult {
     rows: Vec<FemCurveRow>,
     solves: Vec<FemSolveRow>,
-    warning: Option<String>,
+    warnings: Vec<String>,
 }
 
 /// One surface at one speed.
@@ -235,10 +243,16 @@ struct Solver<'a> {
     ratio: f64,
     store: &'a SolveStore,
     context: &'a Context<'a>,
+    /// Pressures in Pa that the store knew and the block did not pass. It passes them before it goes
+    /// on, so that a run that was stopped gives the numbers of one that was not.
+    skipped: Vec<f64>,
     /// Of ascending pressure.
     solves: Vec<FemSolveRow>,
 }
 
+/// Friction and heat may be this far apart, relative to a friction that is not next to nothing.
+const MOST_APART: f64 = 0.05;
+const LEAST_FRICTION: f64 = 0.05;
 /// Solves beyond which a sweep is not led on.
 const MOST_SOLVES: usize = 120;
 
@@ -269,7 +283,19 @@ impl<'a> Solver<'a> {
             "columns": columns,
         });
         let (ratio, solves) = (parameters.pressure_ratio, Vec::new());
-        Ok(Self { surface, speed_mm_s, columns, key, block, ratio, store, context, solves })
+        let skipped = Vec::new();
+        Ok(Self {
+            surface,
+            speed_mm_s,
+            columns,
+            key,
+            block,
+            ratio,
+            store,
+            context,
+            skipped,
+            solves,
+        })
     }
 
     /// Solves pressures at the ratio of the recipe, from below the smallest to above the largest
@@ -299,6 +325,27 @@ impl<'a> Solver<'a> {
         }
         self.solves.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
         Ok(ended)
+    }
+
+    /// A warning where friction and heat are apart: the mesh is too coarse for these contacts.
+    fn coarse_mesh(&self) -> Option<String> {
+        let apart = |row: &FemSolveRow| {
+            let difference = (row.friction_coefficient - row.friction_from_heat).abs();
+            difference > MOST_APART * row.friction_coefficient.abs().max(LEAST_FRICTION)
+        };
+        let solves: Vec<&FemSolveRow> = self.solves.iter().filter(|row| apart(row)).collect();
+        let largest = solves.iter().map(|row| row.contact_area_fraction).fold(0.0, f64::max);
+        let Surface { waves, realisation, .. } = self.surface;
+        (!solves.is_empty()).then(|| {
+            format!(
+                "{waves} waves, realisation {realisation}, {} mm/s: friction and heat are more than 5 % \
+                 apart in {} of {} solves, up to area {largest:.3}: more elements would tell them \
+                 better (fem.columns_per_shortest_wavelength)",
+                self.speed_mm_s,
+                solves.len(),
+                self.solves.len()
+            )
+        })
     }
 
     /// Friction at the areas that lie between solved ones. Nodes come into contact one by one, so
@@ -349,7 +396,10 @@ impl<'a> Solver<'a> {
         let key = Digest::of_value(&self.key);
         let (waves, realisation) = (self.surface.waves, self.surface.realisation);
         let row = match self.store.get::<FemSolveRow>(&key)? {
-            Some(row) => FemSolveRow { waves, realisation, ..row },
+            Some(row) => {
+                self.skipped.push(pressure);
+                FemSolveRow { waves, realisation, ..row }
+            }
             None => {
                 let row = self.solve(pressure)?;
                 self.store.put(&key, &row)?;
@@ -361,6 +411,9 @@ impl<'a> Solver<'a> {
     }
 
     fn solve(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
+        for skipped in std::mem::take(&mut self.skipped) {
+            self.block.solve(skipped)?;
+        }
         let start = Instant::now();
         let solution = self.block.solve(pressure)?;
         Ok(FemSolveRow {

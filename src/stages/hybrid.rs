@@ -200,7 +200,7 @@ pub fn run(
         0 => Vec::new(),
         count => vec![format!(
             "{count} of {} values have no correction: the local pressure reaches {needed:.3} MPa, \
-             beyond the sampled microscale",
+             outside the sampled microscale (largest_pressure_mpa and largest_sample_mpa in {HYBRID_FILE})",
             rows.len()
         )],
     })
@@ -312,12 +312,13 @@ fn corrected(
     local: &[f64],
     residual: f64,
 ) -> HybridRow {
-    let correction = microscale.correction(local).ok();
+    let points = local.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
+    // Without a contact point the microscale has nothing to say.
+    let correction = microscale.correction(local).ok().filter(|_| points > 0);
     let chosen = |correction: &Correction| match parameters.mean {
         MeanRule::Force => correction.force,
         MeanRule::Points => correction.points,
     };
-    let points = local.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
     HybridRow {
         friction_coefficient: correction.as_ref().map(|c| curve.friction_coefficient + chosen(c)),
         correction_points: correction.as_ref().map(|c| c.points),

@@ -1,6 +1,6 @@
 //! micro, hybrid, fem and the tables of several models, against contacts solved one by one.
 
-use super::{Campaign, recipe, run, stale, try_run};
+use super::{Campaign, digests, recipe, run, stale, try_run};
 use asperity::artifact::RunView;
 use asperity::fem::profile::RigidProfile;
 use asperity::fem::steady::{BlockOptions, SteadyContact};
@@ -155,6 +155,25 @@ fn the_tables_have_every_model_and_how_far_they_are_apart() {
             assert!(kinds.contains(&name), "{stage}/{}: {name}", output.file);
         }
     }
+}
+
+/// A stopped run has some of its solves; which ones must not show.
+#[test]
+fn what_was_solved_before_does_not_show() {
+    let campaign = campaign(0.016, "[fem]\ncolumns_per_shortest_wavelength = 24");
+    let (recipe, _) = solved(&campaign);
+    let out = campaign.path("out");
+    let before = digests(&out);
+    let folders = std::fs::read_dir(out.join("solves")).unwrap();
+    let files = folders.flat_map(|folder| std::fs::read_dir(folder.unwrap().path()).unwrap());
+    let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+    files.sort();
+    files.iter().step_by(2).for_each(|file| std::fs::remove_file(file).unwrap());
+    for stage in ["micro", "fem"] {
+        std::fs::remove_dir_all(out.join(stage)).unwrap();
+    }
+    run(&recipe, &out);
+    assert_eq!(digests(&out), before);
 }
 
 #[test]

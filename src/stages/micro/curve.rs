@@ -41,6 +41,9 @@ pub(super) struct MicroCurve<'a> {
     columns: usize,
     half_space: Option<SlidingContact>,
     block: Option<SteadyContact>,
+    /// Pressures in Pa that the store knew and the block did not pass. It passes them before it goes
+    /// on, so that a run that was stopped gives the numbers of one that was not.
+    skipped: Vec<f64>,
 }
 
 impl<'a> MicroCurve<'a> {
@@ -55,7 +58,18 @@ impl<'a> MicroCurve<'a> {
         let shortest = task.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
         let columns = columns(parameters.columns_per_shortest_wavelength, period, shortest);
         let (half_space, block) = (None, None);
-        Self { parameters, rubber, task, store, interrupted, period, columns, half_space, block }
+        Self {
+            parameters,
+            rubber,
+            task,
+            store,
+            interrupted,
+            period,
+            columns,
+            half_space,
+            block,
+            skipped: Vec::new(),
+        }
     }
 
     /// The repulsive law of the half-space up to full contact.
@@ -175,9 +189,13 @@ impl<'a> MicroCurve<'a> {
         let Task { waves, realisation, speed_mm_s, .. } = *self.task;
         let key = self.key(pressure);
         if let Some(row) = self.store.get::<SampleRow>(&key)? {
+            self.skipped.push(pressure);
             return Ok(SampleRow { waves, realisation, ..row });
         }
         let half_space = self.half_space_at(pressure)?;
+        for skipped in std::mem::take(&mut self.skipped) {
+            self.block()?.solve(skipped)?;
+        }
         let start = Instant::now();
         let block = self.block()?.solve(pressure)?;
         let row = SampleRow {
