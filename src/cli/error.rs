@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use crate::contact::ContactError;
-use crate::fem::error::FemError;
+use crate::fem::error::{FemError, PathEnd};
 use crate::fem::transient::TransientError;
 use crate::surface::synthesis::SynthesisError;
 
@@ -79,7 +79,15 @@ impl From<FemError> for CliError {
     fn from(error: FemError) -> Self {
         match error {
             FemError::Rubber(_) | FemError::OutOfRange { .. } => Self::input(error),
-            FemError::PathEnded { .. } | FemError::AreaNotReached { .. } => Self::failure(error),
+            FemError::PathEnded { reached: PathEnd::NotStarted, .. } => {
+                Self::failure(format!("{error}; try other --columns"))
+            }
+            FemError::PathEnded { reached: PathEnd::At { .. }, .. } => {
+                Self::failure(format!("{error}; try other --columns, or a pressure below that"))
+            }
+            FemError::AreaNotReached { .. } => {
+                Self::failure(format!("{error}; give more --columns for a smaller area"))
+            }
         }
     }
 }

@@ -11,6 +11,44 @@ use crate::stages::Stage;
 /// A stage that is done sooner needs no bar.
 const DELAY: Duration = Duration::from_secs(1);
 
+/// How often a spinner is drawn.
+const TICK: Duration = Duration::from_millis(500);
+
+/// A line that says what is under way and for how long, where nobody knows how much is left.
+pub(super) struct Spinner(Option<ProgressBar>);
+
+impl Spinner {
+    /// A line on standard error if that is a terminal, else none. It goes with the value.
+    pub(super) fn new(quiet: bool, message: &str) -> Self {
+        if quiet || !std::io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let style = ProgressStyle::with_template("{msg}, {elapsed} so far")
+            .unwrap_or_else(|_| ProgressStyle::default_spinner());
+        let bar = ProgressBar::new_spinner().with_style(style).with_message(message.to_owned());
+        bar.enable_steady_tick(TICK);
+        Self(Some(bar))
+    }
+
+    /// Says something else.
+    pub(super) fn say(&self, message: &str) {
+        if let Some(bar) = &self.0 {
+            bar.set_message(message.to_owned());
+        }
+    }
+
+    /// Ends the line.
+    pub(super) fn finish(self) {}
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// The bar of the stage under way.
 pub(super) struct Progress {
     shown: bool,

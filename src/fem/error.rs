@@ -20,8 +20,8 @@ pub enum FemError {
     },
     /// The path of solutions ended before the wanted pressure.
     #[error(
-        "no finite-deformation solution at {:.4} MPa on {columns} columns: the path ended {}; \
-         try other --columns, or a pressure below that", .wanted / 1e6, .reached.describe()
+        "no finite-deformation solution at {:.4} MPa on {columns} columns: the path ended {}",
+        .wanted / 1e6, .reached.describe()
     )]
     PathEnded {
         /// The wanted mean pressure in Pa.
@@ -34,7 +34,7 @@ pub enum FemError {
     /// No pressure was found that gives the wanted contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {columns} columns: the nearest \
-         found is {found} at {:.6} MPa; use more columns for a smaller area", .pressure / 1e6
+         found is {found} at {:.6} MPa", .pressure / 1e6
     )]
     AreaNotReached {
         /// The wanted contact area fraction.
@@ -67,7 +67,7 @@ pub enum PathEnd {
 impl PathEnd {
     fn describe(&self) -> String {
         match self {
-            Self::NotStarted => "before the first contact".into(),
+            Self::NotStarted => "before the first contact was found".into(),
             Self::At { pressure, friction_coefficient, contact_area_fraction } => format!(
                 "at {:.4} MPa, where friction is {friction_coefficient:.4} and the contact area \
                  fraction {contact_area_fraction:.4}",

@@ -5,6 +5,9 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
+/// Share of the mean square slope that the waves that matter make up.
+const SLOPE_SHARE: f64 = 0.99;
+
 /// Height, slope and curvature of the profile at one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Height {
@@ -85,6 +88,32 @@ impl RigidProfile {
         }
     }
 
+    /// As [`Self::shortest_waves`], but sines of next to no slope do not count either: what a mesh
+    /// must resolve.
+    pub fn steep_waves(&self) -> f64 {
+        let Shape::Waves(waves) = &self.shape else { return self.shortest_waves() };
+        let mut powers: Vec<(f64, f64)> = waves
+            .iter()
+            .map(|wave| (wave.wavelength, (wave.amplitude / wave.wavelength).powi(2)))
+            .collect();
+        powers.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let total: f64 = powers.iter().map(|(_, power)| power).sum();
+        let mut sum = 0.0;
+        let steep = powers.into_iter().find(|(_, power)| {
+            sum += power;
+            sum >= SLOPE_SHARE * total
+        });
+        steep.map_or(1.0, |(wavelength, _)| (self.period / wavelength).round())
+    }
+
+    /// The number of heights that it goes through, if it is not known as sines.
+    pub fn samples(&self) -> Option<usize> {
+        match &self.shape {
+            Shape::Waves(_) => None,
+            Shape::Samples(samples) => Some(samples.len()),
+        }
+    }
+
     /// Height and derivatives at any position `x` in m.
     pub fn at(&self, x: f64) -> Height {
         match &self.shape {
@@ -109,7 +138,7 @@ fn shortest_waves(samples: &[Height]) -> f64 {
     let mut sum = 0.0;
     let shortest = powers.iter().position(|power| {
         sum += power;
-        sum >= 0.99 * total
+        sum >= SLOPE_SHARE * total
     });
     shortest.unwrap_or(1).max(1) as f64
 }
@@ -189,6 +218,21 @@ mod tests {
                 assert_relative_eq!(at.curvature, curvature, epsilon = 1e-3);
             }
         }
+    }
+
+    #[test]
+    fn the_waves_to_resolve_are_those_with_slope() {
+        let mut waves = waves();
+        let steep = |waves: &[Wave]| RigidProfile::from_waves(waves, 1.0).steep_waves();
+        assert_eq!(steep(&waves), 8.0);
+        // Slopes of 0.1, 0.14 and 8e-6 over 2 pi.
+        waves[2].amplitude = 1e-6;
+        assert_eq!(steep(&waves), 2.0);
+        assert_eq!(RigidProfile::from_waves(&waves, 1.0).shortest_waves(), 8.0);
+        let samples = wave::sample(&waves, 1.0, 64);
+        assert_eq!(RigidProfile::from_heights(&samples, 1.0).steep_waves(), 2.0);
+        let flat = Wave { wavelength: 1.0, amplitude: 0.0, phase: 0.0 };
+        assert_eq!(steep(&[flat]), 1.0);
     }
 
     #[test]

@@ -72,6 +72,93 @@ fn the_end_of_a_path_is_an_error_with_the_last_point() {
     .error(1);
     assert!(error.contains("no finite-deformation solution at 20.0000 MPa"), "{error}");
     assert!(error.contains("the path ended at 0.") && error.contains("friction is"), "{error}");
+    assert!(error.contains("try other --columns, or a pressure below that"), "{error}");
+    let area = asperity("solve fem --wave 0.0625:0.01867 --speed 10 --area 0.9 --columns 32");
+    let error = area.error(1);
+    assert!(error.starts_with("error: --area 0.9: no finite-deformation solution"), "{error}");
+}
+
+#[test]
+fn a_path_that_never_began_has_no_pressure_below() {
+    let error =
+        asperity("solve fem --wave 0.0625:1 --speed 20 --pressure 24 --columns 48").error(1);
+    assert!(error.contains("before the first contact was found; try other --columns"), "{error}");
+    assert!(!error.contains("below"), "{error}");
+}
+
+#[test]
+fn a_profile_that_is_not_resolved_is_refused_or_warned_of() {
+    let two = "solve fem --wave 0.5:0.01 --wave 0.0625:0.005 --speed 10 --pressure 0.1 --columns";
+    let error = asperity(&format!("{two} 32")).error(2);
+    assert!(error.contains("32 columns are 4.0 on the shortest wave"), "{error}");
+    assert!(error.contains("--columns 64 at least, better 512"), "{error}");
+    let few = asperity(&format!("{two} 96 --json"));
+    assert_eq!(few.code, 0);
+    assert!(few.stderr.starts_with("warning: 12.0 columns on the shortest wave"), "{}", few.stderr);
+    // The short wave has no slope that matters.
+    let gentle =
+        "solve fem --wave 0.5:0.01 --wave 0.0625:1e-6 --speed 10 --pressure 0.1 --columns 64";
+    asperity(gentle).result();
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("profile.txt");
+    let profile = "solve fem --profile {} --profile-unit mm --speed 10 --pressure 0.1 --columns 64";
+    fs::write(&path, "0 0.1\n1 0.2\n2 0.1\n").unwrap();
+    let error = asperity_at(profile, &path).error(2);
+    assert!(error.contains("has 3 points, a profile needs 8 or more"), "{error}");
+    let zigzag = |i: usize| f64::from(u8::from(i.is_multiple_of(2)));
+    let height = |i: usize| 0.1 * zigzag(i / 3 + i) + 1e-3 * i as f64;
+    let lines: String = (0..16).map(|i| format!("{i} {}\n", height(i))).collect();
+    fs::write(&path, lines).unwrap();
+    let error = asperity_at(profile, &path).error(2);
+    assert!(error.contains("not resolved by its 16 points"), "{error}");
+}
+
+#[test]
+fn a_period_too_long_to_be_meant_is_not_solved_unasked() {
+    let error =
+        asperity("solve fem --wave 0.0625:0.01 --wave 0.0626:0.01 --speed 10 --pressure 0.1")
+            .error(2);
+    for part in ["39.1250 mm", "626 of the shortest waves", "are 40064", "--columns N"] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+}
+
+#[test]
+fn both_routes_warn_of_a_coarse_mesh_with_figures() {
+    for arguments in [
+        "--wave 0.0625:0.01867 --speed 10000 --pressure 1 --columns 128",
+        "--wave 0.0625:0.005 --speed 10 --pressure 0.3 --columns 16 --route transient --drag-periods 4",
+    ] {
+        let outcome = asperity(&format!("solve fem {arguments} --json"));
+        assert_eq!(outcome.code, 0);
+        let result: Value = serde_json::from_str(&outcome.stdout).unwrap();
+        for key in ["friction_coefficient", "hysteretic_friction"] {
+            let figure = number(&result, key).to_string();
+            assert!(outcome.stderr.contains(&figure[..6]), "{figure}: {}", outcome.stderr);
+        }
+        assert!(outcome.stderr.contains("give more --columns"), "{}", outcome.stderr);
+    }
+}
+
+#[test]
+fn a_drag_that_stops_says_where_in_the_units_of_the_options() {
+    let error = asperity(
+        "solve fem --wave 0.0625:0.02 --speed 10 --pressure 20 --route transient --columns 16",
+    )
+    .error(1);
+    assert!(error.contains(" MPa, 0.000000 mm dragged)"), "{error}");
+    assert!(error.contains("use more columns or a smaller pressure"), "{error}");
+}
+
+#[test]
+fn the_file_of_a_bad_rubber_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rubber.toml");
+    fs::write(&path, "name = 'tread'\nequilibrium_modulus_mpa = 4.0\npoisson_ratio = 0.5\n")
+        .unwrap();
+    let error = asperity_at(&format!("{SINE} --rubber {{}}"), &path).error(2);
+    assert!(error.contains("rubber.toml: ") && error.contains("poisson_ratio is 0.5"), "{error}");
 }
 
 #[test]
@@ -79,6 +166,9 @@ fn contradictions_are_named() {
     for (arguments, message) in [
         ("--points 64", "give --columns"),
         ("--series drag.csv", "--series needs --route transient"),
+        ("--drag-periods 12", "--drag-periods needs --route transient"),
+        ("--flow-rule trapezoidal", "--flow-rule needs --route transient"),
+        ("--route transient --drag-periods 0", "--drag-periods is 0: give at least 1"),
         ("--route transient --fields f.csv", "--fields are those of the steady route"),
         ("--columns 4", "the number of columns is 4"),
         ("--height 0.01", "the height of the block in periods is 0.01"),

@@ -8,8 +8,10 @@ use clap::{ArgGroup, Args, ValueEnum};
 use super::fem_output::{Summary, write_fields, write_series};
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
+use super::resolution;
 use super::shape::{Shape, ShapeOptions};
-use crate::cli::output::{json, note, print, significant, write_file};
+use crate::cli::output::{json, note, print, write_file};
+use crate::cli::progress::Spinner;
 use crate::cli::{CliError, values};
 use crate::contact::SlidingContact;
 use crate::fem::profile::RigidProfile;
@@ -19,12 +21,8 @@ use crate::rubber::{Rheology, Rubber};
 
 /// Relative to the wanted fraction; below what a mesh resolves.
 const AREA_TOLERANCE: f64 = 1e-4;
-/// Columns on the shortest wave without --columns: friction is then within about half a percent
-/// of the limit for usual areas.
-const DEFAULT_COLUMNS_PER_WAVE: f64 = 64.0;
-
-/// Relative difference of heat and work from which the user is warned; converged meshes have 1e-3.
-const COARSE: f64 = 0.05;
+/// Periods of a drag without --drag-periods, those of the thesis.
+const DEFAULT_DRAG_PERIODS: usize = 12;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -64,8 +62,8 @@ pub(in crate::cli) struct Fem {
     /// The stationary field in the frame of the profile, or time steps as in the thesis.
     #[arg(long, value_name = "ROUTE", value_enum, default_value_t = Route::Steady)]
     route: Route,
-    /// Elements over the period, 8 to 65536 [default: 64 on the shortest wave, at least 128; of
-    /// the transient route a fourth of that].
+    /// Elements over the period, 8 to 65536 [default: 64 on the shortest wave, at least 128 and at
+    /// most 4096; of the transient route a fourth of that].
     #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     columns: Option<usize>,
     /// Law of the springs at finite strain.
@@ -74,12 +72,12 @@ pub(in crate::cli) struct Fem {
     /// Height of the block in periods.
     #[arg(long, value_name = "PERIODS", default_value_t = 0.75, value_parser = values::positive, allow_negative_numbers = true)]
     height: f64,
-    /// Periods of the drag, the last third of which is averaged; transient route only.
-    #[arg(long, value_name = "N", default_value_t = 12, value_parser = values::count::<usize>, allow_negative_numbers = true)]
-    drag_periods: usize,
-    /// Time integration of the branches; transient route only.
-    #[arg(long, value_name = "RULE", value_enum, default_value_t = Rule::Trapezoidal)]
-    flow_rule: Rule,
+    /// Periods of the drag, the last third of which is averaged; transient route only [default: 12].
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
+    drag_periods: Option<usize>,
+    /// Time integration of the branches; transient route only [default: trapezoidal].
+    #[arg(long, value_name = "RULE", value_enum)]
+    flow_rule: Option<Rule>,
     /// Print JSON with full precision instead of a table.
     #[arg(long)]
     json: bool,
@@ -134,15 +132,19 @@ impl From<Rule> for FlowRule {
 impl Fem {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         self.check()?;
-        let rubber = self.material.rubber()?;
+        let rubber = self.material.rubber_at_finite_deformation()?;
         let shape = self.shape.build()?;
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
         let profile = rigid_profile(&shape);
+        let options = self.block(&profile)?;
+        for warning in resolution::check(&profile, options.columns)? {
+            note(quiet, format_args!("warning: {warning}"));
+        }
         let summary = match self.route {
-            Route::Steady => self.steady(&rubber, profile, quiet)?,
-            Route::Transient => self.transient(&rubber, profile, &shape)?,
+            Route::Steady => self.steady(&rubber, profile, options, quiet)?,
+            Route::Transient => self.transient(&rubber, profile, &shape, options, quiet)?,
         };
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
@@ -165,50 +167,64 @@ impl Fem {
                 "--fields are those of the steady route: leave it out, or give --series",
             ));
         }
-        if !transient && self.series.is_some() {
-            return Err(CliError::input(
-                "--series needs --route transient: the steady field has no time",
-            ));
+        for (option, given) in [
+            ("--series", self.series.is_some()),
+            ("--drag-periods", self.drag_periods.is_some()),
+            ("--flow-rule", self.flow_rule.is_some()),
+        ] {
+            if given && !transient {
+                return Err(CliError::input(format!(
+                    "{option} needs --route transient: the steady field has no time"
+                )));
+            }
+        }
+        if self.drag_periods == Some(0) {
+            return Err(CliError::input(format!(
+                "--drag-periods is 0: give at least 1, the default is {DEFAULT_DRAG_PERIODS}"
+            )));
         }
         let inputs = [self.shape.profile.as_deref(), self.material.file()];
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &inputs)?;
         refuse_to_overwrite(self.series.as_deref(), "--series", &inputs)
     }
 
-    fn columns(&self, profile: &RigidProfile) -> usize {
-        let usual = (DEFAULT_COLUMNS_PER_WAVE * profile.shortest_waves()).max(128.0) as usize;
-        self.columns.unwrap_or(match self.route {
-            Route::Steady => usual,
-            Route::Transient => usual / 4,
-        })
+    /// The block of the options, on the usual number of columns if none is given.
+    fn block(&self, profile: &RigidProfile) -> Result<BlockOptions, CliError> {
+        let columns = match (self.columns, self.route) {
+            (Some(columns), _) => columns,
+            (None, Route::Steady) => resolution::usual_columns(profile)?,
+            (None, Route::Transient) => resolution::usual_columns(profile)? / 4,
+        };
+        let options = BlockOptions { height_ratio: self.height, ..BlockOptions::new(columns) };
+        options.check(profile.period())?;
+        Ok(options)
     }
 
     fn steady(
         &self,
         rubber: &Rubber,
         profile: RigidProfile,
+        options: BlockOptions,
         quiet: bool,
     ) -> Result<Summary, CliError> {
-        let options =
-            BlockOptions { height_ratio: self.height, ..BlockOptions::new(self.columns(&profile)) };
         let start = Instant::now();
         let rheology = self.rheology.into();
         let mut contact = SteadyContact::new(rubber, rheology, self.speed / 1e3, profile, options)?;
+        let spinner = Spinner::new(quiet, &format!("solving on {} columns", options.columns));
         let solution = match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => contact.solve(pressure_mpa * 1e6)?,
-            (None, Some(fraction)) => contact.solve_for_area(fraction, AREA_TOLERANCE)?,
+            (None, Some(fraction)) => {
+                contact.solve_for_area(fraction, AREA_TOLERANCE).map_err(|error| {
+                    let error = CliError::from(error);
+                    CliError::failure(format!("--area {fraction}: {error}"))
+                })?
+            }
             (None, None) => return Err(CliError::input("give --pressure or --area")),
         };
-        let imbalance = solution.hysteretic_friction / solution.friction_coefficient - 1.0;
-        if imbalance.abs() > COARSE && solution.hysteretic_friction != 0.0 {
-            note(
-                quiet,
-                format_args!(
-                    "warning: the heat of the branches differs from the work of the drag by {} %, \
-                     the mesh is too coarse for reliable figures: give more --columns",
-                    significant(100.0 * imbalance)
-                ),
-            );
+        spinner.finish();
+        let (friction, heat) = (solution.friction_coefficient, solution.hysteretic_friction);
+        if let Some(warning) = resolution::coarse(friction, heat, solution.mean_separation) {
+            note(quiet, format_args!("warning: {warning}; give more --columns"));
         }
         if let Some(path) = &self.fields {
             write_file(path, true, |out| write_fields(out, &solution))?;
@@ -221,15 +237,14 @@ impl Fem {
         rubber: &Rubber,
         profile: RigidProfile,
         shape: &Shape,
+        options: BlockOptions,
+        quiet: bool,
     ) -> Result<Summary, CliError> {
         let Some(pressure_mpa) = self.pressure else {
             return Err(CliError::input("give --pressure"));
         };
         let (pressure, speed) = (pressure_mpa * 1e6, self.speed / 1e3);
-        let options =
-            BlockOptions { height_ratio: self.height, ..BlockOptions::new(self.columns(&profile)) };
         let start = Instant::now();
-        options.check(profile.period())?;
         let mut mesh = options.mesh(profile.period());
         // The shear that the half-space's friction would give; half of it keeps elements usable
         // from the first touch to the full drag.
@@ -239,20 +254,35 @@ impl Fem {
         let shear_modulus = rubber.equilibrium_modulus / (2.0 * (1.0 + rubber.poisson_ratio));
         mesh.skew = -0.5 * friction * pressure / shear_modulus;
         let elements = [mesh.columns, mesh.rows()];
+        let drag_periods = self.drag_periods.unwrap_or(DEFAULT_DRAG_PERIODS);
         let drag = TransientOptions {
-            flow: self.flow_rule.into(),
-            drag_periods: self.drag_periods,
-            averaged_periods: (self.drag_periods / 3).max(1),
+            flow: self.flow_rule.unwrap_or(Rule::Trapezoidal).into(),
+            drag_periods,
+            averaged_periods: (drag_periods / 3).max(1),
             ..TransientOptions::default()
         };
         let contact =
             TransientContact::new(rubber, self.rheology.into(), speed, profile, mesh, drag)?;
-        let solution = contact.run(pressure, |_| {})?;
+        let spinner = Spinner::new(quiet, "pressing in");
+        let solution = contact.run(pressure, |sample| {
+            if sample.displacement > 0.0 {
+                let periods = sample.displacement / shape.period;
+                spinner.say(&format!("dragged {periods:.2} of {drag_periods} periods"));
+            }
+        })?;
+        spinner.finish();
         if let Some(path) = &self.series {
             write_file(path, true, |out| write_series(out, &solution.samples))?;
         }
         let seconds = start.elapsed().as_secs_f64();
-        Ok(Summary::transient(&solution, pressure, elements, seconds))
+        let summary = Summary::transient(&solution, pressure, elements, seconds);
+        let separation = solution.mean_separation.mean;
+        let (friction, heat) = summary.friction_and_heat();
+        if let Some(warning) = resolution::coarse(friction, heat, separation) {
+            let advice = "give more --columns, or more --drag-periods if it was not steady yet";
+            note(quiet, format_args!("warning: {warning}; {advice}"));
+        }
+        Ok(summary)
     }
 }
 

@@ -69,6 +69,11 @@ impl Summary {
         }
     }
 
+    /// Friction by the work of the drag and by the heat of the branches.
+    pub(super) fn friction_and_heat(&self) -> (f64, f64) {
+        (self.friction_coefficient, self.hysteretic_friction)
+    }
+
     pub(super) fn table(&self) -> String {
         let mut lines = vec![
             ("friction coefficient", significant(self.friction_coefficient)),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::{CliError, values};
-use crate::rubber::{Rubber, read_rubber};
+use crate::rubber::{FiniteStrainRubber, Rheology, Rubber, read_rubber};
 
 /// The rubber.
 #[derive(Debug, Args)]
@@ -29,6 +29,18 @@ impl MaterialOptions {
                 Ok(Rubber::elastic(modulus_mpa * 1e6, poisson_ratio))
             }
             _ => Ok(Rubber::table_2_1()),
+        }
+    }
+
+    /// The rubber, if it can be had at finite deformation.
+    pub(super) fn rubber_at_finite_deformation(&self) -> Result<Rubber, CliError> {
+        let rubber = self.rubber()?;
+        match (FiniteStrainRubber::new(&rubber, Rheology::NeoHookean), &self.rubber) {
+            (Ok(_), _) => Ok(rubber),
+            (Err(error), None) => Err(CliError::input(error)),
+            (Err(error), Some(path)) => {
+                Err(CliError::input(format!("{}: {error}", path.display())))
+            }
         }
     }
 

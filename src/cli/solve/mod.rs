@@ -5,6 +5,7 @@ mod fem;
 mod fem_output;
 mod material;
 mod profile_file;
+mod resolution;
 mod shape;
 
 use std::path::Path;

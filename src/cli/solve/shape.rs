@@ -68,6 +68,13 @@ impl ShapeOptions {
             (Some(path), Some(unit)) => {
                 let shape = read_profile(path, unit).map_err(CliError::input)?;
                 let found = shape.heights.len();
+                let least = *POINTS_RANGE.start();
+                if found < least {
+                    return Err(CliError::input(format!(
+                        "{} has {found} points, a profile needs {least} or more",
+                        path.display()
+                    )));
+                }
                 match self.points.filter(|points| *points != found) {
                     None => Ok(shape),
                     Some(points) => Err(CliError::input(format!(

@@ -40,7 +40,8 @@ pub enum TransientError {
     },
     /// Block and profile do not repeat together.
     #[error(
-        "the block's period is {mesh} m, the profile's {profile} m: they must be the same length"
+        "the block's period is {:.5e} mm, the profile's {:.5e} mm: they must be the same length",
+        .mesh * 1e3, .profile * 1e3
     )]
     PeriodMismatch {
         /// Period of the mesh in m.
@@ -50,9 +51,9 @@ pub enum TransientError {
     },
     /// Even the smallest time step found no solution.
     #[error(
-        "no step from t = {time:e} s (pressure {pressure:e} Pa, {displacement:e} m dragged) \
-         even with {time_step:e} s: {failure}; use a finer mesh, a skew of the mesh nearer to \
-         the negative shear of the block, or a smaller pressure"
+        "no step from t = {time:.5e} s (pressure {:.6} MPa, {:.6} mm dragged) even with \
+         {time_step:.5e} s: {failure}; use more columns or a smaller pressure",
+        .pressure / 1e6, .displacement * 1e3
     )]
     Stopped {
         /// Time of the last solution in s.
