@@ -39,7 +39,7 @@ pub use frame::{data_frame, write_csv, write_parquet};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
 pub use schema::{ArraysSchema, AttributeSchema, DatasetSchema, arrays_schema};
 pub use schema::{check_or_write, table_schema};
-pub use solves::SolveStore;
+pub use solves::{SOLVE_SCHEMA, SolveStore, StoredSolve, read_stored_solve};
 pub use store::{Pending, RunFolder, RunView};
 pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
 

@@ -11,7 +11,8 @@ use serde_json::Value;
 
 use super::{ArtifactError, Digest};
 
-const SCHEMA: &str = "asperity.solve";
+/// Schema name of the file of a stored solve.
+pub const SOLVE_SCHEMA: &str = "asperity.solve";
 const VERSION: u32 = 1;
 
 /// A folder of results, each under the digest of all that determines it.
@@ -89,7 +90,7 @@ impl SolveStore {
         let payload = serde_json::to_value(value).map_err(unfit)?;
         T::deserialize(&payload).map_err(unfit)?;
         let entry = Entry {
-            schema: SCHEMA.to_owned(),
+            schema: SOLVE_SCHEMA.to_owned(),
             version: VERSION,
             key: *key,
             digest_of_payload: Digest::of_value(&payload),
@@ -106,9 +107,34 @@ impl SolveStore {
     }
 }
 
+/// The file of a stored solve, for a reader who does not know its key.
+#[derive(Debug, Clone, Serialize)]
+pub struct StoredSolve {
+    /// Version of the file.
+    pub version: u32,
+    /// Digest of all that determines the result.
+    pub key: Digest,
+    /// Whether the result is that which was written.
+    pub intact: bool,
+    /// The result.
+    pub payload: Value,
+}
+
+/// Reads the file of a stored solve, intact or not.
+///
+/// # Errors
+/// [`ArtifactError::Io`]; [`ArtifactError::Unreadable`] for a file of another kind.
+pub fn read_stored_solve(path: &Path) -> Result<StoredSolve, ArtifactError> {
+    let bytes = fs::read(path).map_err(ArtifactError::io("read", path))?;
+    let entry: Entry = serde_json::from_slice(&bytes)
+        .map_err(|error| ArtifactError::unreadable(path, "stored solve", error))?;
+    let intact = Digest::of_value(&entry.payload) == entry.digest_of_payload;
+    Ok(StoredSolve { version: entry.version, key: entry.key, intact, payload: entry.payload })
+}
+
 fn intact_payload(bytes: &[u8], key: &Digest) -> Option<Value> {
     let entry: Entry = serde_json::from_slice(bytes).ok()?;
-    let as_asked = entry.schema == SCHEMA && entry.version == VERSION && entry.key == *key;
+    let as_asked = entry.schema == SOLVE_SCHEMA && entry.version == VERSION && entry.key == *key;
     (as_asked && Digest::of_value(&entry.payload) == entry.digest_of_payload)
         .then_some(entry.payload)
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use asperity::artifact::{
     ArrayDataset, Attribute, Digest, Identity, Input, Manifest, Metadata, Row, RunFolder,
-    SchemaVersion,
+    SchemaVersion, SolveStore,
 };
 use serde_json::json;
 use tempfile::TempDir;
@@ -176,7 +176,7 @@ fn truncated_and_foreign_files_are_named() {
         contains_all(&error, &[file, "truncated"]);
     }
     let path = run.path().join("file");
-    let cases: [(&[u8], &str); 5] = [
+    let cases: [(&[u8], &str); 6] = [
         (b"", "is empty"),
         (b"PK\x03\x04\0\0", "is none of Arrow table"),
         (
@@ -184,9 +184,10 @@ fn truncated_and_foreign_files_are_named() {
             "version 9, this tool reads version 1",
         ),
         (
-            b"{\"schema\": \"asperity.solve\", \"version\": 1}",
-            "holds asperity.solve, expected asperity.manifest",
+            b"{\"schema\": \"asperity.recipe\", \"version\": 1}",
+            "holds asperity.recipe, expected asperity.manifest",
         ),
+        (b"{\"schema\": \"asperity.solve\", \"version\": 1}", "no readable stored solve"),
         (b"{\"a\": 1}", "no readable manifest"),
     ];
     for (bytes, part) in cases {
@@ -236,4 +237,20 @@ fn a_real_road_scan_can_be_described_by_options() {
     let options = "inspect {} --separator tab --skip-until *****DATA***** --x-column 2 --x-unit mm --z-column 3 --z-unit mm";
     let text = asperity_at(options, &path).result();
     contains_all(&text, &["51067 points, 4373 missing (8.6 %)", "0 to 1914.41 mm"]);
+}
+
+#[test]
+fn a_stored_solve_is_told_from_a_manifest_and_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path()).unwrap();
+    let key = Digest::of_bytes(b"all that determines it");
+    store.put(&key, &json!({ "friction_coefficient": 0.25 })).unwrap();
+    let digits = key.to_string();
+    let path = folder.path().join(&digits[..2]).join(format!("{digits}.json"));
+    let text = asperity_at("inspect {}", &path).result();
+    contains_all(&text, &["asperity.solve version 1", "intact", "\"friction_coefficient\": 0.25"]);
+    let result = asperity_at("inspect {} --json", &path).json();
+    assert_eq!((&result["kind"], &result["key"]), (&json!("solve"), &json!(digits)));
+    fs::write(&path, fs::read_to_string(&path).unwrap().replace("0.25", "0.75")).unwrap();
+    assert!(asperity_at("inspect {}", &path).result().contains("CHANGED"));
 }

@@ -4,6 +4,7 @@ mod artifact;
 mod folder;
 mod provenance;
 mod scan;
+mod solve;
 
 use std::fs::File;
 use std::io::Read;
@@ -17,6 +18,7 @@ use super::output::{json, print};
 use artifact::{Arrays, Table};
 use folder::{ManifestFile, Run, Stage};
 use scan::{Scan, ScanOptions};
+use solve::Solve;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -28,7 +30,8 @@ Examples:
 
 /// Show what a file or folder holds: schema, units, shape, provenance, first rows.
 ///
-/// PATH is an Arrow table, an HDF5 file of arrays, a manifest, the folder of a stage or of a run, or
+/// PATH is an Arrow table, an HDF5 file of arrays, a manifest, a stored solve, the folder of a stage
+/// or of a run, or
 /// a text scan. The kind is found by looking into it; the name does not matter.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -52,6 +55,7 @@ enum Finding {
     Stage(Stage),
     Run(Run),
     Scan(Scan),
+    Solve(Solve),
 }
 
 impl Inspect {
@@ -70,6 +74,7 @@ impl Inspect {
         Ok(match Format::of(&start) {
             Format::Arrow => Finding::Table(Table::read(path)?),
             Format::Hdf5 => Finding::Arrays(Arrays::read(path)?),
+            Format::Json if Solve::is_in(path) => Finding::Solve(Solve::read(path)?),
             Format::Json => Finding::Manifest(ManifestFile::read(path)?),
             Format::Text => Finding::Scan(self.scan.read(path, &start)?),
             Format::Empty => return Err(foreign(path, "is empty")),
@@ -92,6 +97,7 @@ impl Finding {
             Self::Stage(stage) => stage.text(),
             Self::Run(run) => run.text(),
             Self::Scan(scan) => scan.text(),
+            Self::Solve(solve) => solve.text(),
         }
     }
 }

@@ -1,0 +1,47 @@
+//! Stored single solves.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::artifact::{SOLVE_SCHEMA, StoredSolve, read_stored_solve};
+use crate::cli::CliError;
+use crate::cli::output::aligned;
+
+/// One result of a sweep, kept so that a stopped run goes on from it.
+#[derive(Debug, Serialize)]
+pub(super) struct Solve {
+    path: PathBuf,
+    #[serde(flatten)]
+    stored: StoredSolve,
+}
+
+impl Solve {
+    /// Whether a file of JSON says that it is one.
+    pub(super) fn is_in(path: &Path) -> bool {
+        #[derive(Deserialize)]
+        struct Header {
+            schema: String,
+        }
+        let header =
+            std::fs::read(path).ok().and_then(|b| serde_json::from_slice::<Header>(&b).ok());
+        header.is_some_and(|header| header.schema == SOLVE_SCHEMA)
+    }
+
+    pub(super) fn read(path: &Path) -> Result<Self, CliError> {
+        let stored = read_stored_solve(path).map_err(CliError::input)?;
+        Ok(Self { path: path.to_path_buf(), stored })
+    }
+
+    pub(super) fn text(&self) -> String {
+        let StoredSolve { version, key, intact, payload } = &self.stored;
+        let state = if *intact { "intact" } else { "CHANGED since it was written" };
+        let lines = [
+            ("stored solve", self.path.display().to_string()),
+            ("schema", format!("{SOLVE_SCHEMA} version {version}")),
+            ("key", format!("{key:#}")),
+            ("content", state.to_owned()),
+        ];
+        format!("{}result\n{payload:#}\n", aligned(&lines))
+    }
+}
