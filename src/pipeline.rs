@@ -47,8 +47,8 @@ pub enum Event<'a> {
     Progress(Stage, u64, u64),
     /// A stage has its result.
     Finished(Stage, &'a Manifest),
-    /// A stage was up to date.
-    Fresh(Stage),
+    /// A stage was up to date; this is the result that is there.
+    Fresh(Stage, &'a Manifest),
 }
 
 /// Whether a stage has the result that the recipe asks for.
@@ -82,16 +82,25 @@ pub enum PipelineError {
         /// Those of the recipe.
         stages: Vec<&'static str>,
     },
+    /// A stage to be computed in any case that is not to be computed at all.
+    #[error(
+        "--force {forced} does nothing beside --only and --from that leave {forced} out: give one \
+         or the other"
+    )]
+    ForcedOutside {
+        /// The stage that was to be forced.
+        forced: Stage,
+    },
     /// The run folder.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
-    /// A stage before the selected one is not up to date.
+    /// A stage that a selected one reads, through others or not, is not up to date.
     #[error(
         "{selected} needs the results of {stage}, which is stale ({reason}); run without --only \
          and --from, or with --from {stage}"
     )]
     StaleInput {
-        /// The stage that was asked for.
+        /// The first selected stage that needs it.
         selected: Stage,
         /// The stage that is stale.
         stage: Stage,
@@ -131,15 +140,19 @@ pub fn run(
         let identity = plan.identity(stage, &folder)?;
         let state = state(stage, &identity, &folder)?;
         if !selection.includes(stage) {
-            let selected = selection.only.or(selection.from).unwrap_or(stage);
-            if let (State::Stale(reasons), true) = (&state, stage < selected) {
+            let mut selected = plan.stages().into_iter().filter(|stage| selection.includes(*stage));
+            let reader = selected.find(|selected| plan.upstream(*selected).contains(&stage));
+            if let (State::Stale(reasons), Some(selected)) = (&state, reader) {
                 let reason = reasons.join("; ");
                 return Err(PipelineError::StaleInput { selected, stage, reason });
             }
             continue;
         }
-        if state == State::Fresh && selection.force != Some(stage) {
-            observer(Event::Fresh(stage));
+        if state == State::Fresh
+            && selection.force != Some(stage)
+            && let Some(manifest) = folder.stage_manifest(stage.name())?
+        {
+            observer(Event::Fresh(stage, &manifest));
             continue;
         }
         observer(Event::Started(stage));
@@ -169,7 +182,10 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
     let plan = Plan::new(recipe)?;
     let mut states: Vec<(Stage, State)> = Vec::new();
     for stage in plan.stages() {
-        let before = states.iter().find(|(_, state)| *state != State::Fresh);
+        let upstream = plan.upstream(stage);
+        let before = states
+            .iter()
+            .find(|(before, state)| *state != State::Fresh && upstream.contains(before));
         let state = match before {
             // What a stage would read is not known before those it reads from are up to date.
             Some((before, _)) => State::Stale(vec![match view.stage_manifest(stage.name()) {
@@ -306,7 +322,9 @@ fn compare(path: &str, old: &Value, new: &Value, reasons: &mut Vec<String>) {
     for key in keys {
         let part = |keys: &serde_json::Map<String, Value>| keys.get(key).cloned();
         let (old, new) = (part(old_keys).unwrap_or_default(), part(new_keys).unwrap_or_default());
-        compare(&format!("{path}.{key}"), &old, &new, reasons);
+        // Stages that depend on several sections have their own among their parameters.
+        let path = if key == path { path.to_owned() } else { format!("{path}.{key}") };
+        compare(&path, &old, &new, reasons);
     }
 }
 

@@ -116,7 +116,7 @@ pub enum RecipeError {
 #[derive(Debug, thiserror::Error)]
 pub enum Violation {
     /// In any other section than `[ingest]`.
-    #[error("{key} = {value}: {demand}")]
+    #[error("{key} = {value}, wanted: {demand}")]
     Demand {
         /// The key with its section, such as `bem.speeds_mm_s`.
         key: &'static str,
@@ -274,7 +274,7 @@ impl Chain<'_> {
             self.realise.waves.iter().all(|waves| fitted.contains(waves)),
             "realise.waves",
             &self.realise.waves,
-            "each number of waves must also stand in approximate.waves",
+            "numbers of waves that also stand in approximate.waves",
         )
     }
 }

@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::output::{print, write_file};
+use super::last_run::LastRun;
+use super::output::{note, print, write_file};
 use crate::artifact::{RunView, data_frame as data_frame_of, write_csv, write_parquet};
 use crate::report::{
     FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
     markdown,
 };
+use crate::stages::Stage;
 use crate::stages::tables::{
     COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, Model, NOTE_KEY,
 };
@@ -81,20 +83,23 @@ impl Export {
     ///
     /// # Errors
     /// [`CliError`].
-    pub(super) fn run(self) -> Result<(), CliError> {
-        if self.run.is_file() {
+    pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
+        if !self.run.is_dir() {
+            let what = if self.run.exists() { "is a file" } else { "does not exist" };
             return Err(CliError::input(format!(
-                "{} is a file: give the folder of a run, such as runs/asphalt",
+                "{} {what}: give the folder of a run, such as runs/asphalt",
                 self.run.display()
             )));
         }
         let view = RunView::of(&self.run);
         if let Some(table) = &self.table {
-            return self.one_table(&view, table);
+            return self.one_table(&view, table, quiet);
         }
         if view.stage_manifest("sinusoid").map_err(CliError::input)?.is_some() {
+            self.warn_of_doubt("sinusoid", quiet);
             return self.study(&view);
         }
+        self.warn_of_doubt("tables", quiet);
         let (rows, _) =
             view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;
         if self.comparison {
@@ -129,22 +134,32 @@ impl Export {
         }
     }
 
-    /// A table of the run as it is.
-    fn one_table(&self, view: &RunView, table: &str) -> Result<(), CliError> {
-        let (stage, name) = table.split_once('/').ok_or_else(|| {
-            CliError::input(format!("--table {table}: give a stage and a table, as hybrid/local"))
-        })?;
-        let file = format!("{}.arrow", name.trim_end_matches(".arrow"));
-        let manifest = view.stage_manifest(stage).map_err(CliError::input)?;
-        let outputs: Vec<String> =
-            manifest.into_iter().flat_map(|m| m.outputs).map(|output| output.file).collect();
-        if !outputs.contains(&file) {
-            return Err(CliError::input(format!(
-                "{}: stage {stage} has no table {name}; it has [{}]",
-                self.run.display(),
-                outputs.join(", ")
-            )));
+    /// Says what of a result is not that of the recipe any more. Tables that are not there are an
+    /// error of their own.
+    fn warn_of_doubt(&self, stage: &str, quiet: bool) {
+        let there = self.run.join(stage).exists();
+        let last_run = LastRun::read(&self.run).filter(|_| there && !quiet);
+        if let Some(doubt) = last_run.and_then(|last_run| last_run.doubt(&self.run, stage)) {
+            note(quiet, format_args!("warning: {doubt}"));
         }
+    }
+
+    /// A table of the run as it is.
+    fn one_table(&self, view: &RunView, table: &str, quiet: bool) -> Result<(), CliError> {
+        let tables = all_tables(view);
+        let wanted = table.trim_end_matches(".arrow");
+        let Some((stage, name)) =
+            wanted.split_once('/').filter(|_| tables.iter().any(|t| t == wanted))
+        else {
+            return Err(CliError::input(format!(
+                "{} has no table {table}; it has {}",
+                self.run.display(),
+                if tables.is_empty() { "none yet".into() } else { tables.join(", ") }
+            )));
+        };
+        view.verify(stage).map_err(CliError::input)?;
+        self.warn_of_doubt(stage, quiet);
+        let file = format!("{name}.arrow");
         let mut frame = data_frame_of(&view.file(stage, &file)).map_err(CliError::input)?;
         match (self.format, &self.to) {
             (Format::Csv, None) => print(&csv_text(&mut frame)?),
@@ -225,6 +240,20 @@ impl Export {
         let bytes = std::fs::read(&temporary).map_err(CliError::failure)?;
         write_file(path, self.force, |out| out.write_all(&bytes))
     }
+}
+
+/// All tables of a run, as `stage/table`.
+fn all_tables(view: &RunView) -> Vec<String> {
+    let mut tables = Vec::new();
+    for stage in Stage::CHAIN.into_iter().chain([Stage::Sinusoid]) {
+        // One stage with a damaged manifest leaves those of the others.
+        let manifest = view.stage_manifest(stage.name()).ok().flatten();
+        let outputs = manifest.into_iter().flat_map(|manifest| manifest.outputs);
+        let names =
+            outputs.filter_map(|output| Some(output.file.strip_suffix(".arrow")?.to_owned()));
+        tables.extend(names.map(|name| format!("{stage}/{name}")));
+    }
+    tables
 }
 
 fn csv_text(frame: &mut polars::prelude::DataFrame) -> Result<String, CliError> {

@@ -7,6 +7,7 @@ mod error;
 mod export;
 mod inspect;
 mod interrupt;
+mod last_run;
 mod output;
 mod progress;
 mod recipe_options;
@@ -53,7 +54,7 @@ impl Arguments {
         match self.command {
             Command::Run(command) => command.run(self.quiet),
             Command::Status(command) => command.run(),
-            Command::Export(command) => command.run(),
+            Command::Export(command) => command.run(self.quiet),
             Command::Solve(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),

@@ -1,10 +1,11 @@
 //! What `run` and `status` have in common: the recipe, the scans, the run folder.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::CliError;
+use super::last_run::LastRun;
 use crate::pipeline::PipelineError;
 use crate::recipe::{Recipe, RecipeError};
 use crate::stages::StageError;
@@ -29,18 +30,15 @@ impl RecipeOptions {
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn recipe(&self) -> Result<Recipe, CliError> {
-        let mut recipe = Recipe::read(&self.recipe)?;
-        if !self.scans.is_empty() {
-            let Some(ingest) = &mut recipe.ingest else {
-                return Err(CliError::input(format!(
-                    "{} states its waves itself ([[approximate.given]] or [sinusoid]) and reads no \
-                     scans: leave --scans out",
-                    self.recipe.display()
-                )));
-            };
-            ingest.scans.clone_from(&self.scans);
-        }
-        Ok(recipe)
+        with_scans(Recipe::read(&self.recipe)?, &self.recipe, &self.scans)
+    }
+
+    /// What was given, to be kept with the results.
+    ///
+    /// # Errors
+    /// [`CliError::Failure`].
+    pub(super) fn last_run(&self) -> Result<LastRun, CliError> {
+        LastRun::new(&self.recipe, &self.scans)
     }
 
     /// The run folder.
@@ -48,6 +46,28 @@ impl RecipeOptions {
         let stem = || self.recipe.file_stem().unwrap_or("run".as_ref());
         self.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(stem()))
     }
+}
+
+/// The recipe at `path` with other scans, if there are some.
+///
+/// # Errors
+/// [`CliError::Input`] if it reads none.
+pub(super) fn with_scans(
+    mut recipe: Recipe,
+    path: &Path,
+    scans: &[PathBuf],
+) -> Result<Recipe, CliError> {
+    if !scans.is_empty() {
+        let Some(ingest) = &mut recipe.ingest else {
+            return Err(CliError::input(format!(
+                "{} states its waves itself ([[approximate.given]] or [sinusoid]) and reads no \
+                 scans: leave --scans out",
+                path.display()
+            )));
+        };
+        ingest.scans = scans.to_vec();
+    }
+    Ok(recipe)
 }
 
 impl From<RecipeError> for CliError {
@@ -64,7 +84,8 @@ impl From<PipelineError> for CliError {
         let is_input = match &error {
             PipelineError::StaleInput { .. }
             | PipelineError::Recipe(_)
-            | PipelineError::NoSuchStage { .. } => true,
+            | PipelineError::NoSuchStage { .. }
+            | PipelineError::ForcedOutside { .. } => true,
             PipelineError::Artifact(_) => false,
             PipelineError::Stage { source, .. } => matches!(
                 **source,
@@ -79,6 +100,7 @@ impl From<PipelineError> for CliError {
                     | StageError::Ladder(_)
                     | StageError::NoWaves { .. }
                     | StageError::Rubber(_)
+                    | StageError::RubberAtFiniteDeformation { .. }
                     | StageError::NoRelaxation { .. }
             ),
         };

@@ -9,6 +9,7 @@ use super::output::{json, note, print};
 use super::progress::Progress;
 use super::recipe_options::RecipeOptions;
 use super::{CliError, values};
+use crate::artifact::Manifest;
 use crate::pipeline::{self, Event, Selection};
 use crate::stages::Stage;
 
@@ -92,15 +93,15 @@ impl Run {
             Event::Finished(stage, manifest) => {
                 progress.finish();
                 note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
-                for warning in &manifest.warnings {
-                    note(quiet, format_args!("  warning: {warning}"));
-                }
+                warn(quiet, manifest);
                 let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
                 record(StageSummary { stage, computed: true, seconds, warnings });
             }
-            Event::Fresh(stage) => {
+            Event::Fresh(stage, manifest) => {
                 note(quiet, format_args!("{stage:<13} up to date"));
-                record(StageSummary { stage, computed: false, seconds: None, warnings: vec![] });
+                warn(quiet, manifest);
+                let warnings = manifest.warnings.clone();
+                record(StageSummary { stage, computed: false, seconds: None, warnings });
             }
         })
         .inspect_err(|error| {
@@ -109,11 +110,19 @@ impl Run {
                 note(quiet, "what is done is kept: the same command continues");
             }
         })?;
+        self.recipe.last_run()?.write(&out)?;
         if self.json {
             let stages = summaries.into_inner().unwrap_or_default();
             return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);
         }
         note(quiet, format_args!("results in {}", out.display()));
         Ok(())
+    }
+}
+
+/// What a user should know about a result, as long as it is the one in use.
+fn warn(quiet: bool, manifest: &Manifest) {
+    for warning in &manifest.warnings {
+        note(quiet, format_args!("  warning: {warning}"));
     }
 }

@@ -3,12 +3,15 @@
 use super::{PipelineError, Selection};
 use crate::artifact::{ArtifactError, Identity, Input, RunView, SchemaVersion};
 use crate::recipe::{Chain, Recipe, Work};
-use crate::rubber::Rubber;
+use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Stage, approximate, bem, characterise, fem, hybrid, ingest, micro, realise, sinusoid, tables,
+    Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro, realise,
+    sinusoid, tables,
 };
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::path::Path;
 
 /// What the recipe asks for with what it refers to.
 pub(super) struct Plan<'a> {
@@ -29,9 +32,19 @@ impl<'a> Plan<'a> {
                     scans = ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?;
                 }
                 published = tables::inputs(chain.tables).map_err(of(Stage::Tables))?;
-                bem::rubber(chain.bem).map_err(of(Stage::Bem))?
+                let rubber = bem::rubber(chain.bem).map_err(of(Stage::Bem))?;
+                let finite =
+                    [(chain.micro.is_some(), Stage::Micro), (chain.fem.is_some(), Stage::Fem)];
+                if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
+                    check_finite_strain(&rubber, &chain.bem.rubber).map_err(of(stage))?;
+                }
+                rubber
             }
-            Work::Sinusoid(study) => sinusoid::rubber(study).map_err(of(Stage::Sinusoid))?,
+            Work::Sinusoid(study) => {
+                let rubber = sinusoid::rubber(study).map_err(of(Stage::Sinusoid))?;
+                check_finite_strain(&rubber, &study.rubber).map_err(of(Stage::Sinusoid))?;
+                rubber
+            }
         };
         Ok(Self { work, scans, rubber, published })
     }
@@ -48,7 +61,8 @@ impl<'a> Plan<'a> {
         Stage::CHAIN.into_iter().filter(has).collect()
     }
 
-    /// Fails for a selected stage that the recipe does not have.
+    /// Fails for a selected stage that the recipe does not have, and for a forced one that is not
+    /// among those to be brought up to date.
     pub fn check(&self, selection: Selection) -> Result<(), PipelineError> {
         let selected = [selection.only, selection.from, selection.force].into_iter().flatten();
         for selected in selected {
@@ -57,7 +71,12 @@ impl<'a> Plan<'a> {
                 return Err(PipelineError::NoSuchStage { selected, stages });
             }
         }
-        Ok(())
+        match selection.force {
+            Some(forced) if !selection.includes(forced) => {
+                Err(PipelineError::ForcedOutside { forced })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// All that determines the result of a stage, given the results before it.
@@ -73,67 +92,83 @@ impl<'a> Plan<'a> {
         Ok(Identity { stage, stage_revision, output_schemas, parameters, inputs })
     }
 
+    /// The files of other stages that a stage reads.
+    fn reads(&self, stage: Stage) -> Vec<(Stage, &'static str)> {
+        let Work::Chain(chain) = self.work else { return Vec::new() };
+        let surfaces = (Stage::Realise, realise::SURFACES_FILE);
+        let curves = (Stage::Bem, bem::CURVES_FILE);
+        match stage {
+            Stage::Ingest | Stage::Sinusoid => Vec::new(),
+            Stage::Characterise => vec![(Stage::Ingest, ingest::SCANS_FILE)],
+            Stage::Approximate if chain.ingest.is_none() => Vec::new(),
+            Stage::Approximate => vec![(Stage::Characterise, characterise::CORRELATION_FILE)],
+            Stage::Realise => vec![(Stage::Approximate, approximate::WAVES_FILE)],
+            Stage::Bem => vec![surfaces],
+            Stage::Micro | Stage::Fem => vec![surfaces, curves],
+            Stage::Hybrid => {
+                let microscale = [micro::SAMPLES_FILE, micro::LAW_FILE];
+                let microscale = microscale.map(|file| (Stage::Micro, file));
+                [surfaces, curves].into_iter().chain(microscale).collect()
+            }
+            Stage::Tables => {
+                let hybrid = chain.micro.map(|_| (Stage::Hybrid, hybrid::HYBRID_FILE));
+                let fem = chain.fem.map(|_| (Stage::Fem, fem::FEM_FILE));
+                [curves].into_iter().chain(hybrid).chain(fem).collect()
+            }
+        }
+    }
+
+    /// The stages that a result depends on, through any number of others.
+    pub fn upstream(&self, stage: Stage) -> BTreeSet<Stage> {
+        let mut found = BTreeSet::new();
+        let mut open = vec![stage];
+        while let Some(stage) = open.pop() {
+            for (read, _) in self.reads(stage) {
+                if found.insert(read) {
+                    open.push(read);
+                }
+            }
+        }
+        found
+    }
+
     fn chain_identity(
         &self,
         chain: Chain,
         stage: Stage,
         view: &RunView,
     ) -> Result<(u32, Vec<SchemaVersion>, Value, Vec<Input>), ArtifactError> {
-        let from = |stage: Stage, file: &str| -> Result<Vec<Input>, ArtifactError> {
-            let manifest = view.stage_manifest(stage.name())?;
-            Ok(manifest.and_then(|manifest| manifest.input(file)).into_iter().collect())
-        };
-        let surfaces_and_curves = || -> Result<Vec<Input>, ArtifactError> {
-            let mut inputs = from(Stage::Realise, realise::SURFACES_FILE)?;
-            inputs.extend(from(Stage::Bem, bem::CURVES_FILE)?);
-            Ok(inputs)
-        };
-        Ok(match stage {
+        let mut inputs = Vec::new();
+        for (read, file) in self.reads(stage) {
+            let manifest = view.stage_manifest(read.name())?;
+            inputs.extend(manifest.and_then(|manifest| manifest.input(file)));
+        }
+        let (revision, schemas, parameters) = match stage {
             Stage::Ingest => {
                 let mut parameters = json!(chain.ingest);
                 // Where the scans are is no parameter: their names and digests are inputs.
                 if let Value::Object(keys) = &mut parameters {
                     keys.remove("scans");
                 }
-                (ingest::REVISION, ingest::schemas(), parameters, ingest::inputs(&self.scans))
+                inputs.extend(ingest::inputs(&self.scans));
+                (ingest::REVISION, ingest::schemas(), parameters)
             }
-            Stage::Characterise => (
-                characterise::REVISION,
-                characterise::schemas(),
-                json!(chain.characterise),
-                from(Stage::Ingest, ingest::SCANS_FILE)?,
-            ),
+            Stage::Characterise => {
+                (characterise::REVISION, characterise::schemas(), json!(chain.characterise))
+            }
             Stage::Approximate => {
-                let inputs = match chain.ingest {
-                    Some(_) => from(Stage::Characterise, characterise::CORRELATION_FILE)?,
-                    None => Vec::new(),
-                };
-                let parameters = json!(chain.approximate);
-                (approximate::REVISION, approximate::schemas(), parameters, inputs)
+                (approximate::REVISION, approximate::schemas(), json!(chain.approximate))
             }
-            Stage::Realise => (
-                realise::REVISION,
-                realise::schemas(),
-                json!(chain.realise),
-                from(Stage::Approximate, approximate::WAVES_FILE)?,
-            ),
-            Stage::Bem => (
-                bem::REVISION,
-                bem::schemas(),
-                chain.bem.resolved(&self.rubber),
-                from(Stage::Realise, realise::SURFACES_FILE)?,
-            ),
+            Stage::Realise => (realise::REVISION, realise::schemas(), json!(chain.realise)),
+            Stage::Bem => (bem::REVISION, bem::schemas(), chain.bem.resolved(&self.rubber)),
             Stage::Micro => {
                 let parameters = json!({ "micro": chain.micro, "rubber": self.rubber });
-                (micro::REVISION, micro::schemas(), parameters, surfaces_and_curves()?)
+                (micro::REVISION, micro::schemas(), parameters)
             }
             Stage::Hybrid => {
-                let mut inputs = surfaces_and_curves()?;
-                inputs.extend(from(Stage::Micro, micro::SAMPLES_FILE)?);
-                inputs.extend(from(Stage::Micro, micro::LAW_FILE)?);
                 let parameters =
                     json!({ "hybrid": chain.hybrid, "micro": chain.micro, "rubber": self.rubber });
-                (hybrid::REVISION, hybrid::schemas(), parameters, inputs)
+                (hybrid::REVISION, hybrid::schemas(), parameters)
             }
             Stage::Fem => {
                 let parameters = json!({
@@ -142,20 +177,25 @@ impl<'a> Plan<'a> {
                     "speeds_mm_s": chain.bem.speeds_mm_s,
                     "area_fractions": chain.bem.area_fractions,
                 });
-                (fem::REVISION, fem::schemas(), parameters, surfaces_and_curves()?)
+                (fem::REVISION, fem::schemas(), parameters)
             }
             Stage::Tables => {
-                let mut inputs = from(Stage::Bem, bem::CURVES_FILE)?;
-                if chain.micro.is_some() {
-                    inputs.extend(from(Stage::Hybrid, hybrid::HYBRID_FILE)?);
-                }
-                if chain.fem.is_some() {
-                    inputs.extend(from(Stage::Fem, fem::FEM_FILE)?);
-                }
                 inputs.extend(self.published.iter().cloned());
-                (tables::REVISION, tables::schemas(), json!(chain.tables), inputs)
+                (tables::REVISION, tables::schemas(), json!(chain.tables))
             }
             Stage::Sinusoid => unreachable!("no stage of the chain"),
-        })
+        };
+        Ok((revision, schemas, parameters, inputs))
+    }
+}
+
+/// Fails for a rubber that the half-space takes and finite elements do not, before the half-space
+/// is solved for nothing.
+fn check_finite_strain(rubber: &Rubber, file: &Path) -> Result<(), StageError> {
+    match FiniteStrainRubber::new(rubber, Rheology::NeoHookean) {
+        Ok(_) => Ok(()),
+        Err(source) => {
+            Err(StageError::RubberAtFiniteDeformation { path: file.to_path_buf(), source })
+        }
     }
 }

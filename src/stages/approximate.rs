@@ -95,14 +95,17 @@ impl Approximate {
         let demanded = "positive wavelengths, ascending, of which the longest is a multiple, \
                         and amplitudes of 0 or more";
         for given in &self.given {
-            demand(given.holds(), "approximate.given.scales", &given.scales, demanded)?;
+            let scale = |scale: &GivenScale| (scale.wavelength_mm, scale.amplitude_mm);
+            let scales: Vec<(f64, f64)> = given.scales.iter().map(scale).collect();
+            let key = "approximate.given.scales (wavelength_mm, amplitude_mm)";
+            demand(given.holds(), key, scales, demanded)?;
         }
         for (key, value) in [
             ("approximate.shortest_wavelength_mm", self.shortest_wavelength_mm),
             ("approximate.longest_lag_mm", self.longest_lag_mm),
         ] {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
-            demand(positive, key, value, "it must be positive")?;
+            demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
         Ok(())
     }

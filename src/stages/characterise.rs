@@ -73,7 +73,7 @@ impl Characterise {
             ("characterise.self_affine_longest_lag_mm", self.self_affine_longest_lag_mm),
         ] {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
-            demand(positive, key, value, "it must be positive")?;
+            demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
         Ok(())
     }

@@ -212,7 +212,10 @@ fn one_curve(
     let rows = solver.values(&bem.area_fractions);
     let missing = bem.area_fractions.len() - rows.len();
     let warning = (missing > 0).then(|| {
-        let why = ended.map_or_else(|| "its area does not get there".into(), |e| e.to_string());
+        let why = ended.map_or_else(
+            || "its area does not get there".into(),
+            |error| format!("{error}; try another fem.columns_per_shortest_wavelength"),
+        );
         format!(
             "{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {missing} of the contact \
              areas are not reached: {why}"

@@ -195,15 +195,23 @@ pub fn run(
     context.pending.write_table(HYBRID_FILE, &rows, &Metadata::new())?;
     context.pending.write_table(LOCAL_FILE, &locals, &Metadata::new())?;
     let beyond = rows.iter().filter(|row| row.friction_coefficient.is_none());
-    let needed = beyond.clone().map(|row| row.largest_pressure_mpa).fold(0.0, f64::max);
-    Ok(match beyond.count() {
-        0 => Vec::new(),
-        count => vec![format!(
-            "{count} of {} values have no correction: the local pressure reaches {needed:.3} MPa, \
-             outside the sampled microscale (largest_pressure_mpa and largest_sample_mpa in {HYBRID_FILE})",
-            rows.len()
-        )],
-    })
+    let (unsampled, beyond): (Vec<_>, Vec<_>) =
+        beyond.partition(|row| row.largest_sample_mpa == 0.0);
+    let needed = beyond.iter().map(|row| row.largest_pressure_mpa).fold(0.0, f64::max);
+    let (count, unsampled, of) = (beyond.len(), unsampled.len(), rows.len());
+    let beyond = (count > 0).then(|| {
+        format!(
+            "{count} of {of} values have no correction: the local pressure reaches {needed:.3} MPa, \
+             outside the sampled microscale (largest_pressure_mpa and largest_sample_mpa in {HYBRID_FILE})"
+        )
+    });
+    let unsampled = (unsampled > 0).then(|| {
+        format!(
+            "{unsampled} of {of} values have no correction: their microscale has no sample, micro \
+             warns why"
+        )
+    });
+    Ok(beyond.into_iter().chain(unsampled).collect())
 }
 
 fn one_surface(
@@ -232,8 +240,11 @@ fn one_surface(
             speed_mm_s,
             source: Box::new(source),
         };
-        let (microscale, law) =
-            microscale(parameters, surface, speed_mm_s, data).map_err(failed)?;
+        let sampled = microscale(parameters, surface, speed_mm_s, data).map_err(failed)?;
+        let Some((microscale, law)) = sampled else {
+            rows.extend(at_one_speed.iter().map(|curve| beyond(curve, 0.0, 0.0)));
+            continue;
+        };
         let mut contact = SoftContact::new(rubber, speed_mm_s / 1e3, period, &heights, law)
             .map_err(|error| failed(error.into()))?;
         for curve in at_one_speed {
@@ -263,13 +274,14 @@ fn one_surface(
     Ok((rows, locals))
 }
 
-/// The microscale of a surface at a speed and the law that its macro surface meets.
+/// The microscale of a surface at a speed and the law that its macro surface meets; none without a
+/// sample.
 fn microscale(
     parameters: &Hybrid,
     surface: &Surface,
     speed_mm_s: f64,
     data: &Data,
-) -> Result<(Microscale, LocalLaw), SolveError> {
+) -> Result<Option<(Microscale, LocalLaw)>, SolveError> {
     let of = |waves: u32, realisation: u32, speed: f64| {
         waves == surface.waves
             && [0, surface.realisation].contains(&realisation)
@@ -277,6 +289,9 @@ fn microscale(
     };
     let samples: Vec<&SampleRow> =
         data.samples.iter().filter(|row| of(row.waves, row.realisation, row.speed_mm_s)).collect();
+    if samples.is_empty() {
+        return Ok(None);
+    }
     let rows: Vec<LawRow> = data
         .laws
         .iter()
@@ -302,7 +317,7 @@ fn microscale(
         column(|row| row.area_finite_deformation - row.area_half_space),
         column(|row| row.interpolation_error),
     );
-    Ok((microscale, law))
+    Ok(Some((microscale, law)))
 }
 
 fn corrected(
@@ -333,7 +348,7 @@ fn corrected(
     }
 }
 
-/// No correction, because a local pressure in Pa is beyond the largest one of the law.
+/// No correction, because a local pressure in Pa is beyond the largest one that was sampled.
 fn beyond(curve: &CurveRow, pressure: f64, largest: f64) -> HybridRow {
     HybridRow {
         friction_coefficient: None,

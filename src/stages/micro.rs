@@ -50,14 +50,16 @@ impl Default for Micro {
     }
 }
 
+/// What sets the mesh, for messages.
+const COLUMNS_KEY: &str = "micro.columns_per_shortest_wavelength";
+
 impl Micro {
     pub(crate) fn check(&self) -> Result<(), Violation> {
         let threshold = self.rms_slope_threshold;
         let key = "micro.rms_slope_threshold";
-        demand(threshold > 0.0 && threshold.is_finite(), key, threshold, "positive")?;
+        demand(threshold > 0.0 && threshold.is_finite(), key, threshold, "positive and finite")?;
         let columns = self.columns_per_shortest_wavelength;
-        let key = "micro.columns_per_shortest_wavelength";
-        demand((16..=1024).contains(&columns), key, columns, "16 to 1024")?;
+        demand((16..=1024).contains(&columns), COLUMNS_KEY, columns, "16 to 1024")?;
         let tolerance = self.tolerance;
         let key = "micro.tolerance";
         demand((1e-6..=0.1).contains(&tolerance), key, tolerance, "between 1e-6 and 0.1")?;
@@ -179,7 +181,8 @@ struct Task<'a> {
 /// Samples the microscales over the pressures that the macro contacts ask for; returns warnings.
 ///
 /// # Errors
-/// [`StageError::Microscale`]; [`StageError::Interrupted`]. Solves that are done are kept.
+/// [`StageError::NoMicroscale`] if none has a solution, [`StageError::Microscale`];
+/// [`StageError::Interrupted`]. Solves that are done are kept.
 pub fn run(
     parameters: &Micro,
     rubber: &Rubber,
@@ -201,6 +204,11 @@ pub fn run(
             Ok(result)
         })
         .collect::<Result<_, StageError>>()?;
+    if let Some(reason) = results.iter().find_map(|result| result.warning.clone())
+        && results.iter().all(|result| result.samples.is_empty())
+    {
+        return Err(StageError::NoMicroscale { reason });
+    }
     let none = Metadata::new();
     let samples: Vec<_> = results.iter().flat_map(|r| r.samples.iter().cloned()).collect();
     context.pending.write_table(SAMPLES_FILE, &samples, &none)?;

@@ -224,6 +224,16 @@ pub enum StageError {
     /// A rubber file.
     #[error(transparent)]
     Rubber(#[from] crate::rubber::RubberFileError),
+    /// A rubber of which finite elements cannot be made.
+    #[error(
+        "{}: give a poisson_ratio that finite elements take, such as 0.49, or leave out the stage: {source}", path.display()
+    )]
+    RubberAtFiniteDeformation {
+        /// The file of the rubber.
+        path: PathBuf,
+        /// Which number.
+        source: crate::rubber::RubberError,
+    },
     /// A contact.
     #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}")]
     Contact {
@@ -238,13 +248,21 @@ pub enum StageError {
     },
     /// A surface whose waves are all steeper than the threshold.
     #[error(
-        "all of the {waves} waves are steeper than {threshold}: nothing is left for the macro surface; raise micro.rms_slope_threshold"
+        "approximation {waves}: no wave is less steep than {threshold}, nothing is left for the macro surface; raise micro.rms_slope_threshold"
     )]
     NoMacroscale {
         /// Number of waves.
         waves: u32,
         /// The threshold.
         threshold: f64,
+    },
+    /// Not one sample of any microscale.
+    #[error(
+        "no microscale has a solution, so that nothing can be corrected: {reason}, or leave [micro] out"
+    )]
+    NoMicroscale {
+        /// That of the first one.
+        reason: String,
     },
     /// A contact of the microscale, or of the macro surface under its law.
     #[error("microscale of {waves} waves, {speed_mm_s} mm/s: {source}")]

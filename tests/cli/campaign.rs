@@ -42,7 +42,7 @@ fn a_run_tells_of_each_stage_and_leaves_standard_output_to_json() {
 #[test]
 fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
     // What is replaced, by what, and parts of the message: file, key, value, what to do.
-    let cases: [(&str, &str, &[&str]); 29] = [
+    let cases: [(&str, &str, &[&str]); 32] = [
         ("seed = 1", "seed = ", &["line 27", "seed ="]),
         ("seed = 1", "sed = 1", &["line 27", "unknown field `sed`", "`seed`"]),
         ("seed = 1", "", &["missing field `seed`"]),
@@ -80,6 +80,17 @@ fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
             &["[ingest.conditioning]: max_missing is 1.5"],
         ),
         ("\"slope\"", "{ polynomial = 20 }", &["form.polynomial is 20"]),
+        (
+            "[realise]",
+            "[micro]\nrms_slope_threshold = inf\n[realise]",
+            &["micro.rms_slope_threshold = inf, wanted: positive and finite"],
+        ),
+        ("mm = 0.5", "mm = inf", &["shortest_wavelength_mm = inf, wanted: positive and finite"]),
+        (
+            "shortest_wavelength_mm = 0.5",
+            "given = [{ source = 'x', scales = [{ wavelength_mm = 1.0, amplitude_mm = -0.1 }] }]",
+            &["scales (wavelength_mm, amplitude_mm) = [(1.0, -0.1)], wanted: positive wavelengths"],
+        ),
     ];
     let campaign = Campaign::new();
     let recipe = campaign.read("recipe.toml");
@@ -229,6 +240,7 @@ fn exports_are_complete_or_refused() {
     let campaign = Campaign::new();
     campaign.edit("recipe.toml", "[10.0]", "[10.0, 50.0]");
     let export = |arguments: &str| outcome(&campaign, &format!("export {arguments}"));
+    fs::create_dir(campaign.path("out")).unwrap();
     assert!(
         export("out --format csv").error(2).contains("no finished result of the stage `tables`")
     );
@@ -256,4 +268,101 @@ fn exports_are_complete_or_refused() {
     export("out --format parquet --to friction.parquet").result();
     assert!(fs::read(campaign.path("friction.parquet")).unwrap().starts_with(b"PAR1"));
     assert!(export("out --format parquet --to friction.parquet").error(2).contains("--force"));
+}
+
+/// Nothing of the small campaign is steep, so that the microscale costs nothing and warns of it.
+fn with_microscale() -> Campaign {
+    let campaign = Campaign::new();
+    campaign.write("recipe.toml", &(campaign.read("recipe.toml") + "\n[micro]\n"));
+    campaign
+}
+
+#[test]
+fn warnings_are_repeated_as_long_as_their_results_are_in_use() {
+    let campaign = with_microscale();
+    let warning = "no wave is steeper than 1 (micro.rms_slope_threshold)";
+    for _ in 0..2 {
+        let run = outcome(&campaign, RUN);
+        assert_eq!(run.code, 0);
+        assert!(run.stderr.contains(warning), "{}", run.stderr);
+    }
+    let json = outcome(&campaign, &format!("{RUN} --quiet --json --only micro")).json();
+    assert_eq!(json["stages"][0]["computed"], false);
+    assert!(json["stages"][0]["warnings"][0].as_str().unwrap().contains(warning), "{json}");
+}
+
+#[test]
+fn exports_of_results_that_the_recipe_no_longer_asks_for_are_warned_of() {
+    let campaign = with_microscale();
+    outcome(&campaign, &format!("{RUN} --quiet")).result();
+    let tables = "export out --format csv --model bem";
+    let hybrid = "export out --format csv --table hybrid/curves";
+    let fresh = outcome(&campaign, tables).result();
+    outcome(&campaign, hybrid).result();
+
+    let recipe = campaign.read("recipe.toml");
+    campaign.edit("recipe.toml", "seed = 1", "seed = 2");
+    for (export, stage) in [(tables, "tables"), (hybrid, "hybrid")] {
+        let stale = outcome(&campaign, export);
+        assert_eq!(stale.code, 0);
+        let parts = [stage, "recipe.toml", "realise.seed: 1 -> 2", "`asperity run`"];
+        assert!(stale.stderr.starts_with("warning: "), "{}", stale.stderr);
+        assert!(parts.iter().all(|part| stale.stderr.contains(part)), "{}", stale.stderr);
+        outcome(&campaign, &format!("{export} --quiet")).result();
+    }
+    campaign.write("recipe.toml", &recipe.replace("[micro]", ""));
+    let left_over = outcome(&campaign, hybrid);
+    assert!(left_over.stderr.contains("hybrid is left over"), "{}", left_over.stderr);
+    outcome(&campaign, &format!("{RUN} --quiet")).result();
+    assert_eq!(outcome(&campaign, tables).result(), fresh);
+    let left_over = outcome(&campaign, hybrid);
+    assert!(left_over.stderr.contains("has no such stage any more"), "{}", left_over.stderr);
+    fs::remove_file(campaign.path("recipe.toml")).unwrap();
+    let unknown = outcome(&campaign, tables);
+    assert_eq!((unknown.code, unknown.stdout), (0, fresh));
+    assert!(unknown.stderr.contains("cannot be told"), "{}", unknown.stderr);
+}
+
+#[test]
+fn tables_that_are_not_there_are_answered_with_those_that_are() {
+    let campaign = Campaign::new();
+    let error = |arguments: &str| outcome(&campaign, &format!("export {arguments}")).error(2);
+    for table in ["", "--table bem/curves"] {
+        let message = error(&format!("none --format csv {table}"));
+        assert!(message.contains("none does not exist: give the folder of a run"), "{message}");
+    }
+    outcome(&campaign, &format!("{RUN} --quiet")).result();
+    for table in ["nope/x", "bem/x", "bemcurves"] {
+        let message = error(&format!("out --format csv --table {table}"));
+        assert!(message.contains(&format!("out has no table {table}; it has ")), "{message}");
+        assert!(message.contains("bem/curves, ") && message.contains("tables/friction"));
+    }
+    fs::remove_file(campaign.path("out/bem/curves.arrow")).unwrap();
+    let message = error("out --format csv --table bem/curves");
+    assert!(message.contains("out/bem/curves.arrow") && message.contains("check the path"));
+}
+
+#[test]
+fn a_forced_stage_must_be_among_the_selected_ones() {
+    let campaign = Campaign::new();
+    for selection in ["--only tables --force bem", "--from tables --force bem"] {
+        let message = outcome(&campaign, &format!("{RUN} {selection}")).error(2);
+        assert!(message.contains("--force bem does nothing"), "{message}");
+    }
+    assert!(!campaign.path("out").exists());
+}
+
+#[test]
+fn a_rubber_that_finite_elements_refuse_is_found_before_anything_runs() {
+    let campaign = with_microscale();
+    campaign.edit("rubber.toml", "= 0.49", "= 0.5");
+    for command in [RUN, "status recipe.toml --out out"] {
+        let message = outcome(&campaign, command).error(2);
+        assert!(message.starts_with("error: micro: rubber.toml: "), "{message}");
+        assert!(message.contains("poisson_ratio is 0.5, "), "{message}");
+        assert!(!message.contains("caused by"), "{message}");
+    }
+    assert!(!campaign.path("out").exists());
+    campaign.edit("recipe.toml", "[micro]", "");
+    outcome(&campaign, &format!("{RUN} --quiet")).result();
 }

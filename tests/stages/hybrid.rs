@@ -222,3 +222,68 @@ fn only_the_correction_is_made_anew_when_its_rule_changes() {
     let again = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap().0;
     assert!(again.iter().all(|row| row.residual <= 1e-8));
 }
+
+#[test]
+fn stages_are_stale_behind_those_they_read_alone() {
+    let campaign = campaign(0.016, "[fem]\ncolumns_per_shortest_wavelength = 24");
+    let (_, _) = solved(&campaign);
+    campaign.edit("recipe.toml", "tolerance = 5e-3", "tolerance = 4e-3");
+    let (changed, out) = (recipe(&campaign), campaign.path("out"));
+    let found = stale(&changed, &out);
+    let stages: Vec<Stage> = found.iter().map(|(stage, _)| *stage).collect();
+    assert_eq!(stages, [Stage::Micro, Stage::Hybrid, Stage::Tables]);
+    assert_eq!(found[0].1, "micro.tolerance: 0.005 -> 0.004");
+    let only = |stage| Selection { only: Some(stage), ..Selection::default() };
+    assert_eq!(try_run(&changed, &out, only(Stage::Fem)).unwrap(), []);
+    let refused = try_run(&changed, &out, only(Stage::Tables)).unwrap_err().to_string();
+    assert!(refused.starts_with("tables needs the results of micro"), "{refused}");
+    let from = Selection { from: Some(Stage::Fem), ..Selection::default() };
+    let refused = try_run(&changed, &out, from).unwrap_err().to_string();
+    assert!(refused.starts_with("tables needs the results of micro"), "{refused}");
+}
+
+/// Slopes of 71 rms, for which there is not even a first contact.
+const TOO_STEEP_MM: f64 = 1.0;
+
+#[test]
+fn a_microscale_without_a_solution_leaves_its_values_out() {
+    let campaign = campaign(0.016, "");
+    campaign.edit("recipe.toml", "waves = [2]", "waves = [2, 3]");
+    campaign.edit(
+        "recipe.toml",
+        "[realise]",
+        &format!(
+            r#"[[approximate.given]]
+            source = "another test"
+            scales = [
+                {{ wavelength_mm = 0.0625, amplitude_mm = {TOO_STEEP_MM} }},
+                {{ wavelength_mm = 0.125, amplitude_mm = 0.001 }},
+                {{ wavelength_mm = 0.25, amplitude_mm = 0.01 }},
+            ]
+            [realise]"#
+        ),
+    );
+    let (_, view) = solved(&campaign);
+    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let corrected = |row: &HybridRow| row.friction_coefficient.is_some();
+    assert!(rows.iter().any(|row| row.waves == 2 && corrected(row)));
+    assert!(rows.iter().any(|row| row.waves == 3));
+    assert!(!rows.iter().any(|row| row.waves == 3 && corrected(row)));
+    let warnings = |stage| view.stage_manifest(stage).unwrap().unwrap().warnings.join("\n");
+    let micro = warnings("micro");
+    assert!(micro.contains("3 waves, 20 mm/s: the microscale has not one sample: "), "{micro}");
+    assert!(micro.contains("try another micro.columns_per_shortest_wavelength"), "{micro}");
+    assert!(warnings("hybrid").contains("their microscale has no sample"));
+}
+
+#[test]
+fn nothing_to_correct_with_is_an_error_that_says_what_to_do() {
+    let campaign = campaign(TOO_STEEP_MM, "");
+    let error = try_run(&recipe(&campaign), &campaign.path("out"), Selection::default());
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("no microscale has a solution"), "{error}");
+    assert!(
+        error.contains("micro.columns_per_shortest_wavelength, or leave [micro] out"),
+        "{error}"
+    );
+}

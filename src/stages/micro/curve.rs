@@ -1,6 +1,6 @@
 //! One microscale at one speed, sampled as densely as the tolerance needs.
 
-use super::{LawRow, Micro, SampleRow, Task, columns};
+use super::{COLUMNS_KEY, LawRow, Micro, SampleRow, Task, columns};
 use crate::artifact::{Digest, SolveStore};
 use crate::contact::{ContactSolution, SlidingContact};
 use crate::fem::error::{FemError, PathEnd};
@@ -101,7 +101,7 @@ impl<'a> MicroCurve<'a> {
     }
 
     /// Samples from the first contact that the mesh resolves up to `largest` in Pa, or as far as
-    /// there are solutions, with a warning then.
+    /// there are solutions, with a warning then; none if there is none at the first.
     pub fn sample(&mut self, largest: f64) -> Result<(Vec<SampleRow>, Option<String>), SolveError> {
         let first = self.first_pressure(largest)?;
         let mut rows: Vec<SampleRow> = Vec::new();
@@ -109,16 +109,21 @@ impl<'a> MicroCurve<'a> {
         for pressure in geometric(first, MARGIN * largest.max(first), FIRST_RATIO) {
             match self.row(pressure) {
                 Ok(row) => rows.push(row),
-                Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. }))
-                    if !rows.is_empty() =>
-                {
+                Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
                     rows.extend(self.last_on_path(&error, &rows));
                     let Task { waves, speed_mm_s, .. } = self.task;
+                    let reached = match rows.last() {
+                        Some(SampleRow { pressure_mpa, .. }) => {
+                            format!(
+                                "is sampled up to {pressure_mpa:.3} MPa of {:.3}",
+                                largest / 1e6
+                            )
+                        }
+                        None => "has not one sample".into(),
+                    };
                     warning = Some(format!(
-                        "{waves} waves, {speed_mm_s} mm/s: the microscale is sampled up to {:.3} \
-                         MPa of {:.3}: {error}",
-                        rows[rows.len() - 1].pressure_mpa,
-                        largest / 1e6
+                        "{waves} waves, {speed_mm_s} mm/s: the microscale {reached}: {error}; try \
+                         another {COLUMNS_KEY}"
                     ));
                     break;
                 }
@@ -149,7 +154,8 @@ impl<'a> MicroCurve<'a> {
         let FemError::PathEnded { reached: PathEnd::At { pressure, .. }, .. } = error else {
             return None;
         };
-        let beyond = *pressure > 1.05e6 * rows[rows.len() - 1].pressure_mpa;
+        // A contact below the first sample has too few elements.
+        let beyond = *pressure > 1.05e6 * rows.last()?.pressure_mpa;
         beyond.then(|| self.row(*pressure).ok()).flatten()
     }
 

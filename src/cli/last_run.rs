@@ -1,0 +1,86 @@
+//! The recipe that a run folder was last brought up to date with, so that `export` can tell whether
+//! its results still are those of the recipe.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::CliError;
+use super::output::{json, write_file};
+use super::recipe_options::with_scans;
+use crate::pipeline::{self, State};
+use crate::recipe::Recipe;
+use crate::stages::Stage;
+
+/// Beside the lock of the folder; no result.
+const FILE: &str = ".last_run.json";
+
+/// What `asperity run` was given, as absolute paths.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct LastRun {
+    recipe: PathBuf,
+    /// Those of the command line.
+    scans: Vec<PathBuf>,
+}
+
+impl LastRun {
+    /// # Errors
+    /// [`CliError::Failure`] if the working folder is not known.
+    pub(super) fn new(recipe: &Path, scans: &[PathBuf]) -> Result<Self, CliError> {
+        let absolute = |path: &Path| std::path::absolute(path).map_err(CliError::failure);
+        let scans = scans.iter().map(|path| absolute(path)).collect::<Result<_, _>>()?;
+        Ok(Self { recipe: absolute(recipe)?, scans })
+    }
+
+    /// # Errors
+    /// [`CliError::Failure`] if it cannot be written.
+    pub(super) fn write(&self, out: &Path) -> Result<(), CliError> {
+        let text = json(self)?;
+        write_file(&out.join(FILE), true, |out: &mut dyn Write| out.write_all(text.as_bytes()))
+    }
+
+    /// None where no run left one that can be read.
+    pub(super) fn read(out: &Path) -> Option<Self> {
+        serde_json::from_slice(&std::fs::read(out.join(FILE)).ok()?).ok()
+    }
+
+    /// Why the result of a stage in the folder `out` is not what the recipe asks for; none if it is.
+    pub(super) fn doubt(&self, out: &Path, stage: &str) -> Option<String> {
+        let recipe = self.recipe.display();
+        let states = Recipe::read(&self.recipe)
+            .map_err(CliError::from)
+            .and_then(|read| with_scans(read, &self.recipe, &self.scans))
+            .and_then(|read| Ok(pipeline::status(&read, out)?));
+        let states = match states {
+            Ok(states) => states,
+            Err(error) => {
+                return Some(format!(
+                    "whether {stage} is up to date cannot be told from the recipe of its last run: \
+                     {error}"
+                ));
+            }
+        };
+        let Some((_, state)) = states.iter().find(|(known, _)| known.name() == stage) else {
+            return Some(format!(
+                "{stage} is left over from an earlier run: {recipe} has no such stage any more"
+            ));
+        };
+        let State::Stale(reasons) = state else { return None };
+        Some(format!(
+            "{stage} is not what {recipe} asks for ({}): `asperity run` brings it up to date",
+            first_cause(&states, reasons)
+        ))
+    }
+}
+
+/// The reasons, or those of the stage before that they refer to.
+fn first_cause(states: &[(Stage, State)], reasons: &[String]) -> String {
+    let inherited = states.iter().find_map(|(stage, state)| match state {
+        State::Stale(why) if reasons == [format!("{stage} is stale")] => {
+            Some(format!("{stage}: {}", why.join("; ")))
+        }
+        _ => None,
+    });
+    inherited.unwrap_or_else(|| reasons.join("; "))
+}
