@@ -13,8 +13,8 @@ use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::stages::Stage;
 
-/// Beside the lock of the folder; no result.
-const FILE: &str = ".last_run.json";
+/// Beside the folders of the stages; no result.
+const FILE: &str = "last_run.json";
 
 /// What `asperity run` was given, as absolute paths.
 #[derive(Debug, Serialize, Deserialize)]
