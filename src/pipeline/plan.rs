@@ -152,8 +152,13 @@ impl<'a> Plan<'a> {
                 if chain.fem.is_some() {
                     inputs.extend(from(Stage::Fem, fem::FEM_FILE)?);
                 }
+                let mut parameters = json!(chain.tables);
+                if !chain.tables.theories.is_empty() {
+                    inputs.extend(from(Stage::Realise, realise::SURFACES_FILE)?);
+                    parameters["rubber"] = json!(self.rubber);
+                }
                 inputs.extend(self.published.iter().cloned());
-                (tables::REVISION, tables::schemas(), json!(chain.tables), inputs)
+                (tables::REVISION, tables::schemas(), parameters, inputs)
             }
             Stage::Sinusoid => unreachable!("no stage of the chain"),
         })
