@@ -25,9 +25,9 @@ use std::f64::consts::TAU;
 /// ```
 ///
 /// with the friction of full contact where every `W_i` is 1. `W = S P` with `S = γ + (1 - γ) P²`, since a
-/// free surface strains less than one in full contact (Lorenz, Oh, Nam,
-/// Jeon & Persson, J. Chem. Phys. 142, 194701, 2015; γ = 1/2, and 1 in 2001). A wave is a jump of `V`, over which `W` falls: `W_i` is the
-/// mean of `W` over the jump, which is the limit of a narrow band of waves.
+/// free surface strains less than one in full contact (Lorenz, Oh, Nam, Jeon & Persson, J. Chem.
+/// Phys. 142, 194701, 2015: γ = 1/2; that of 2001: 1). A wave is a jump of `V`, over which `W` falls:
+/// `W_i` is the mean of `W` over the jump, which is the limit of a narrow band of waves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Persson {
     gamma: f64,
