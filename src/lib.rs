@@ -13,6 +13,7 @@
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
+//! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
 //! | [`scans`] | readers of instrument files: bytes in, scan or error out |
 //! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
 //! | [`schemas`] | the documents in `schemas/` |
@@ -43,3 +44,4 @@ pub mod scans;
 pub mod schemas;
 pub mod stages;
 pub mod surface;
+pub mod theory;

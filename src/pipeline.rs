@@ -245,7 +245,7 @@ fn compute(
         },
         Stage::Tables => {
             let with = tables::Models { hybrid: chain.micro.is_some(), fem: chain.fem.is_some() };
-            tables::run(chain.tables, with, folder, context)
+            tables::run(chain.tables, with, &plan.rubber, folder, context)
         }
         Stage::Sinusoid => unreachable!("no stage of the chain"),
     }

@@ -262,6 +262,7 @@ impl Chain<'_> {
         self.bem.check()?;
         self.micro.map_or(Ok(()), Micro::check)?;
         self.fem.map_or(Ok(()), Fem::check)?;
+        self.tables.check()?;
         let (scans, given) = (self.ingest.is_some(), !self.approximate.given.is_empty());
         demand(
             scans != given && (!given || self.approximate.waves.is_empty()),

@@ -42,6 +42,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<tables::FrictionRow>()?,
         table::<tables::ComparisonRow>()?,
         table::<tables::ModelRow>()?,
+        table::<tables::TheoryRow>()?,
         table::<sinusoid::PointRow>()?,
         table::<sinusoid::AsymptoteRow>()?,
         table::<sinusoid::FieldRow>()?,

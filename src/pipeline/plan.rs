@@ -113,7 +113,8 @@ impl<'a> Plan<'a> {
             Stage::Tables => {
                 let hybrid = chain.micro.map(|_| (Stage::Hybrid, hybrid::HYBRID_FILE));
                 let fem = chain.fem.map(|_| (Stage::Fem, fem::FEM_FILE));
-                [curves].into_iter().chain(hybrid).chain(fem).collect()
+                let theories = (!chain.tables.theories.is_empty()).then_some(surfaces);
+                [curves].into_iter().chain(hybrid).chain(fem).chain(theories).collect()
             }
         }
     }
@@ -180,8 +181,12 @@ impl<'a> Plan<'a> {
                 (fem::REVISION, fem::schemas(), parameters)
             }
             Stage::Tables => {
+                let mut parameters = json!(chain.tables);
+                if !chain.tables.theories.is_empty() {
+                    parameters["rubber"] = json!(self.rubber);
+                }
                 inputs.extend(self.published.iter().cloned());
-                (tables::REVISION, tables::schemas(), json!(chain.tables))
+                (tables::REVISION, tables::schemas(), parameters)
             }
             Stage::Sinusoid => unreachable!("no stage of the chain"),
         };

@@ -1,6 +1,7 @@
 //! tables: friction over contact area, averaged over the realisations.
 
 mod models;
+mod theories;
 
 use super::bem::{CURVES_FILE, CurveRow};
 use super::fem::{FEM_FILE, FemCurveRow};
@@ -8,11 +9,15 @@ use super::hybrid::{HYBRID_FILE, HybridRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
+use crate::recipe::{Violation, demand};
+use crate::rubber::Rubber;
 use models::comparisons;
 pub use models::{MODELS_FILE, ModelRow};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+use theories::predictions;
+pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 1;
@@ -27,6 +32,21 @@ pub struct Tables {
     /// What a reader of the comparison should know, in Markdown.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub note: String,
+    /// Older theories to stand beside the models that are solved.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub theories: Vec<Theory>,
+    /// What these theories leave to be chosen.
+    #[serde(skip_serializing_if = "TheoryConstants::is_default")]
+    pub theory_constants: TheoryConstants,
+}
+
+impl Tables {
+    pub(crate) fn check(&self) -> Result<(), Violation> {
+        let theories = &self.theories;
+        let once = theories.iter().enumerate().all(|(i, a)| !theories[..i].contains(a));
+        demand(once, "tables.theories", theories, "each theory once")?;
+        self.theory_constants.check()
+    }
 }
 
 /// A published table of friction over contact area.
@@ -50,7 +70,7 @@ pub struct Published {
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, clap::ValueEnum,
 )]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// The viscoelastic half-space.
     #[default]
@@ -59,6 +79,10 @@ pub enum Model {
     Hybrid,
     /// All waves at finite deformation.
     Fem,
+    /// Persson's theory.
+    Persson,
+    /// The theory of Klüppel and Heinrich.
+    KlueppelHeinrich,
 }
 
 impl Model {
@@ -68,6 +92,8 @@ impl Model {
             Self::Bem => BEM,
             Self::Hybrid => HYBRID,
             Self::Fem => FEM,
+            Self::Persson => PERSSON,
+            Self::KlueppelHeinrich => KLUEPPEL_HEINRICH,
         }
     }
 }
@@ -75,6 +101,8 @@ impl Model {
 const BEM: &str = "bem";
 const HYBRID: &str = "hybrid";
 const FEM: &str = "fem";
+const PERSSON: &str = "persson";
+const KLUEPPEL_HEINRICH: &str = "klueppel-heinrich";
 
 /// The models of a run besides the half-space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +120,7 @@ pub const FRICTION_FILE: &str = "friction.arrow";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrictionRow {
     /// Contact model: `bem`, the viscoelastic half-space; `hybrid`, corrected by its steepest
-    /// waves; `fem`, all waves at finite deformation.
+    /// waves; `fem`, all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
     pub model: String,
     /// Number of waves of the approximation.
     pub waves: u32,
@@ -168,7 +196,12 @@ impl Row for ComparisonRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<FrictionRow>(), schema_of::<ComparisonRow>(), schema_of::<ModelRow>()]
+    vec![
+        schema_of::<FrictionRow>(),
+        schema_of::<ComparisonRow>(),
+        schema_of::<ModelRow>(),
+        schema_of::<TheoryRow>(),
+    ]
 }
 
 /// The published tables as inputs of the stage.
@@ -193,11 +226,12 @@ pub fn inputs(parameters: &Tables) -> Result<Vec<Input>, StageError> {
 pub fn run(
     parameters: &Tables,
     models: Models,
+    rubber: &Rubber,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let (bem, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
-    let bem: Vec<Value> = bem.into_iter().map(Value::from).collect();
+    let (half_space, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
+    let bem: Vec<Value> = half_space.iter().cloned().map(Value::from).collect();
     let mut rows = average(BEM, bem.clone());
     if models.hybrid {
         let (hybrid, _) = run.read_table::<HybridRow>("hybrid", HYBRID_FILE)?;
@@ -209,12 +243,21 @@ pub fn run(
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
         rows.extend(average(FEM, complete(values, realisations(&bem))));
     }
+    let (theories, constants) = (&parameters.theories, &parameters.theory_constants);
+    let warnings = constants.warnings(theories);
+    if !theories.is_empty() {
+        let predictions = predictions(theories, constants, rubber, &half_space, run)?;
+        for of_one in predictions.chunk_by(|a, b| a.model == b.model) {
+            rows.extend(average(&of_one[0].model, of_one.iter().map(Value::from).collect()));
+        }
+        context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
+    }
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
-    if models.hybrid || models.fem {
+    if models.hybrid || models.fem || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
     }
     if parameters.published.is_empty() {
-        return Ok(Vec::new());
+        return Ok(warnings);
     }
     let mut compared = Vec::new();
     for published in &parameters.published {
@@ -222,7 +265,7 @@ pub fn run(
     }
     let metadata = Metadata::from([(NOTE_KEY.to_owned(), parameters.note.clone())]);
     context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
-    Ok(Vec::new())
+    Ok(warnings)
 }
 
 /// The computed rows that the published table has too.

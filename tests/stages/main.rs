@@ -13,6 +13,7 @@ mod interruption;
 mod scans;
 mod schemas;
 mod sinusoid;
+mod theories;
 mod waves;
 
 use asperity::artifact::{Digest, RunView};

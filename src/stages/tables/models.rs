@@ -1,6 +1,6 @@
 //! How far the models of a run are apart.
 
-use super::{BEM, FEM, FrictionRow, HYBRID};
+use super::{BEM, FEM, FrictionRow, HYBRID, KLUEPPEL_HEINRICH, PERSSON};
 use crate::artifact::Row;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -45,10 +45,17 @@ impl Row for ModelRow {
     const VERSION: u32 = 1;
 }
 
-/// Every pair of models of a run, the better one as the reference.
+/// Every pair of models of a run, the better one as the reference; the theories by what is solved.
 pub(super) fn comparisons(rows: &[FrictionRow]) -> Vec<ModelRow> {
-    let pairs = [(BEM, FEM), (HYBRID, FEM), (BEM, HYBRID)];
-    pairs.into_iter().flat_map(|(model, reference)| apart(rows, model, reference)).collect()
+    let solved = [(BEM, FEM), (HYBRID, FEM), (BEM, HYBRID)];
+    let theories = [PERSSON, KLUEPPEL_HEINRICH]
+        .into_iter()
+        .flat_map(|theory| [BEM, HYBRID, FEM].map(|reference| (theory, reference)));
+    solved
+        .into_iter()
+        .chain(theories)
+        .flat_map(|(model, reference)| apart(rows, model, reference))
+        .collect()
 }
 
 /// How far a model is from another, for each number of waves and speed.
