@@ -236,7 +236,7 @@ fn one_surface(
     for at_one_speed in curves.chunk_by(|a, b| a.speed_mm_s == b.speed_mm_s) {
         let speed_mm_s = at_one_speed[0].speed_mm_s;
         let failed = |source: SolveError| StageError::Microscale {
-            waves: surface.waves,
+            owners: format!("{} waves", surface.waves),
             speed_mm_s,
             source: Box::new(source),
         };

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[micro]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -168,11 +168,10 @@ pub fn schemas() -> Vec<SchemaVersion> {
     vec![schema_of::<SampleRow>(), schema_of::<LawRow>()]
 }
 
-/// The microscale of one approximation, or of one realisation of it, and the surfaces that have
-/// it.
+/// One microscale at one speed, and the surfaces that have it.
 struct Task<'a> {
-    waves: u32,
-    realisation: u32,
+    /// The approximations, or the realisations of them, whose microscale this is.
+    owners: Vec<Owner>,
     speed_mm_s: f64,
     micro: Vec<Wave>,
     surfaces: Vec<&'a Surface>,
@@ -210,6 +209,8 @@ pub fn run(
         return Err(StageError::NoMicroscale { reason });
     }
     let none = Metadata::new();
+    let results: Vec<TaskResult> =
+        tasks.iter().zip(results).map(|(task, result)| result.owned_by(&task.owners)).collect();
     let samples: Vec<_> = results.iter().flat_map(|r| r.samples.iter().cloned()).collect();
     context.pending.write_table(SAMPLES_FILE, &samples, &none)?;
     let laws: Vec<_> = results.iter().flat_map(|r| r.law.iter().cloned()).collect();
@@ -244,26 +245,75 @@ fn tasks<'a>(
             return Err(StageError::NoMacroscale { waves, threshold });
         }
         for &speed_mm_s in &speeds {
-            let shared = tasks.iter_mut().find(|task| {
-                task.waves == surface.waves && task.speed_mm_s == speed_mm_s && task.micro == micro
-            });
+            let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
+            let owner = Owner { waves: surface.waves, realisation };
+            let shared = tasks
+                .iter_mut()
+                .find(|task| task.speed_mm_s == speed_mm_s && same_waves(&task.micro, &micro));
             if let Some(task) = shared {
                 task.surfaces.push(surface);
+                if !task.owners.contains(&owner) {
+                    task.owners.push(owner);
+                }
                 continue;
             }
-            let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
-            let (waves, micro) = (surface.waves, micro.clone());
-            let surfaces = vec![surface];
-            tasks.push(Task { waves, realisation, speed_mm_s, micro, surfaces });
+            let (owners, surfaces, micro) = (vec![owner], vec![surface], micro.clone());
+            tasks.push(Task { owners, speed_mm_s, micro, surfaces });
         }
     }
     Ok(tasks)
+}
+
+/// An approximation, or one realisation of it, as the tables name it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Owner {
+    waves: u32,
+    /// 0 for all of them.
+    realisation: u32,
+}
+
+impl Task<'_> {
+    /// "8 and 9 waves", for messages.
+    fn owner_names(&self) -> String {
+        let mut counts: Vec<u32> = self.owners.iter().map(|owner| owner.waves).collect();
+        counts.dedup();
+        let counts: Vec<String> = counts.iter().map(u32::to_string).collect();
+        format!("{} waves", counts.join(" and "))
+    }
+}
+
+/// Relative difference of two amplitudes, or phase difference, that is but round-off: fits of eight
+/// and of nine waves agree in the steepest one.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Whether two microscales are one.
+fn same_waves(left: &[Wave], right: &[Wave]) -> bool {
+    let same = |(a, b): (&Wave, &Wave)| {
+        a.wavelength == b.wavelength
+            && (a.amplitude - b.amplitude).abs() <= ROUND_OFF * a.amplitude.abs()
+            && (a.phase - b.phase).abs() <= ROUND_OFF
+    };
+    left.len() == right.len() && left.iter().zip(right).all(same)
 }
 
 struct TaskResult {
     samples: Vec<SampleRow>,
     law: Vec<LawRow>,
     warning: Option<String>,
+}
+
+impl TaskResult {
+    /// The rows once for every owner.
+    fn owned_by(self, owners: &[Owner]) -> Self {
+        let (mut samples, mut law) = (Vec::new(), Vec::new());
+        for &Owner { waves, realisation } in owners {
+            let owned = |row: &SampleRow| SampleRow { waves, realisation, ..row.clone() };
+            samples.extend(self.samples.iter().map(owned));
+            let owned = |row: &LawRow| LawRow { waves, realisation, ..row.clone() };
+            law.extend(self.law.iter().map(owned));
+        }
+        Self { samples, law, warning: self.warning }
+    }
 }
 
 fn one_task(
@@ -277,7 +327,7 @@ fn one_task(
     let failed = |source: SolveError| match context.check_interrupt() {
         Err(interrupt) => interrupt,
         Ok(()) => StageError::Microscale {
-            waves: task.waves,
+            owners: task.owner_names(),
             speed_mm_s: task.speed_mm_s,
             source: Box::new(source),
         },

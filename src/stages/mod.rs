@@ -265,10 +265,10 @@ pub enum StageError {
         reason: String,
     },
     /// A contact of the microscale, or of the macro surface under its law.
-    #[error("microscale of {waves} waves, {speed_mm_s} mm/s: {source}")]
+    #[error("microscale of {owners}, {speed_mm_s} mm/s: {source}")]
     Microscale {
-        /// Number of waves.
-        waves: u32,
+        /// Whose it is, such as `8 waves`.
+        owners: String,
         /// Speed in mm/s.
         speed_mm_s: f64,
         /// Why.

@@ -108,8 +108,9 @@ const SHORTEST_STEP: f64 = 1e-3;
 const HARMLESS: f64 = 0.1;
 /// A node is in contact where its force exceeds this many times its gap, both relative.
 const FORCE_OVER_GAP: f64 = 1e3;
-/// Stiffness of a closed contact in units of the rubber's.
-const CONTACT_STIFFNESS: f64 = 30.0;
+/// Stiffness of a closed contact in units of the rubber's. What a step leaves of the gaps is the ratio
+/// of the stiffness of the block and this one; thin elements above a tip are stiff.
+const CONTACT_STIFFNESS: f64 = 1e3;
 
 impl Problem<'_> {
     /// Iterates until the residual is reached.

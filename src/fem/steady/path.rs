@@ -72,14 +72,17 @@ const SMALLEST_STEP: f64 = 1.02;
 /// A finer mesh that cannot be entered at a pressure is tried again at this share of it.
 const NEXT_ENTRY: f64 = 0.7;
 /// Shear of the elements beyond which rows are shifted anew.
-const MOST_SHEAR: f64 = 0.35;
+const MOST_SHEAR: f64 = 0.2;
 /// Shear at which it is worth while where the path is stuck, and at its end.
 const LEAST_SHEAR: f64 = 0.05;
 /// Shear with which a solution counts; a shear of 1 would change friction by some percent, this one
 /// by less than a thousandth.
 const MOST_FINAL_SHEAR: f64 = 0.1;
-/// The smallest part of a shift that is tried.
-const SMALLEST_SHIFT: f64 = 0.2;
+/// Change of the shear of the elements below which a shift is given up.
+const SMALLEST_SHIFT: f64 = 0.01;
+/// After a shift that took no more Newton steps than this the next one may be longer, by this ratio.
+const EASY_SHIFT: usize = 3;
+const LONGER_SHIFT: f64 = 1.5;
 /// On the way the path need not be met exactly.
 const ON_THE_WAY: Goal =
     Goal { residual: 1e-3, acceptable: 1e-3, most_steps: 25, highest: f64::INFINITY };
@@ -339,22 +342,30 @@ impl Path {
         mesh.skew + self.state.shear(mesh)
     }
 
-    /// Shifts the rows so that the mean shear leaves the elements upright to within `most_shear`,
-    /// at once or, where that is too far for the state to follow, in parts.
+    /// Shifts the rows until the mean shear leaves the elements upright, if they are slanted by more
+    /// than `most_shear`; in shifts as long as the state can follow, since thin elements above a
+    /// tip turn inside out if their rows move too far at once.
     fn stand_upright(&mut self, most_shear: f64) {
-        let mut share = 1.0;
-        while self.slant().abs() > most_shear && share > SMALLEST_SHIFT {
+        if self.slant().abs() <= most_shear {
+            return;
+        }
+        let mut longest = f64::INFINITY;
+        while self.slant().abs() > LEAST_SHEAR && longest > SMALLEST_SHIFT {
             let mesh = self.level.block.mesh().clone();
-            let shifted = Mesh { skew: mesh.skew - share * self.slant(), ..mesh.clone() };
+            let shift = -self.slant().clamp(-longest, longest);
+            let shifted = Mesh { skew: mesh.skew + shift, ..mesh.clone() };
             let moved = transfer(&self.state, &mesh, &shifted);
             let before = std::mem::replace(&mut self.state, moved);
             let material = self.level.block.material().clone();
             self.level.block = Block::new(shifted, material.clone());
             self.centre();
+            let spent = self.cost.newton_steps;
             if self.converge(self.pressure, BARRIER, ON_THE_WAY).is_err() {
                 self.state = before;
                 self.level.block = Block::new(mesh, material);
-                share *= 0.5;
+                longest = 0.5 * shift.abs();
+            } else if self.cost.newton_steps - spent <= EASY_SHIFT {
+                longest = LONGER_SHIFT * shift.abs();
             }
         }
     }

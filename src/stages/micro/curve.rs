@@ -1,6 +1,6 @@
 //! One microscale at one speed, sampled as densely as the tolerance needs.
 
-use super::{COLUMNS_KEY, LawRow, Micro, SampleRow, Task, columns};
+use super::{COLUMNS_KEY, LawRow, Micro, Owner, SampleRow, Task, columns};
 use crate::artifact::{Digest, SolveStore};
 use crate::contact::{ContactSolution, SlidingContact};
 use crate::fem::error::{FemError, PathEnd};
@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Revision of the solvers: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 1;
+const SOLVER_REVISION: u32 = 2;
 /// Grid points of the half-space on the shortest wave.
 const POINTS_PER_WAVE: f64 = 1024.0;
 /// Samples of the repulsive law up to full contact, at `p* (0.1 + 0.9 t)^4`: see [`LocalLaw`].
@@ -78,7 +78,8 @@ impl<'a> MicroCurve<'a> {
         let touch_separation_m = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
             - heights.iter().sum::<f64>() / heights.len() as f64;
         let full = self.half_space()?.full_contact_limit();
-        let Task { waves, realisation, speed_mm_s, .. } = *self.task;
+        let (Owner { waves, realisation }, speed_mm_s) =
+            (self.task.owners[0], self.task.speed_mm_s);
         let mut rows = Vec::with_capacity(LAW_SAMPLES);
         for k in 0..LAW_SAMPLES {
             let t = k as f64 / (LAW_SAMPLES - 1) as f64;
@@ -111,7 +112,7 @@ impl<'a> MicroCurve<'a> {
                 Ok(row) => rows.push(row),
                 Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
                     rows.extend(self.last_on_path(&error, &rows));
-                    let Task { waves, speed_mm_s, .. } = self.task;
+                    let (owners, speed_mm_s) = (self.task.owner_names(), self.task.speed_mm_s);
                     let reached = match rows.last() {
                         Some(SampleRow { pressure_mpa, .. }) => {
                             format!(
@@ -122,7 +123,7 @@ impl<'a> MicroCurve<'a> {
                         None => "has not one sample".into(),
                     };
                     warning = Some(format!(
-                        "{waves} waves, {speed_mm_s} mm/s: the microscale {reached}: {error}; try \
+                        "{owners}, {speed_mm_s} mm/s: the microscale {reached}: {error}; try \
                          another {COLUMNS_KEY}"
                     ));
                     break;
@@ -192,7 +193,8 @@ impl<'a> MicroCurve<'a> {
         if self.interrupted.load(Ordering::Relaxed) {
             return Err(SolveError::Interrupted);
         }
-        let Task { waves, realisation, speed_mm_s, .. } = *self.task;
+        let (Owner { waves, realisation }, speed_mm_s) =
+            (self.task.owners[0], self.task.speed_mm_s);
         let key = self.key(pressure);
         if let Some(row) = self.store.get::<SampleRow>(&key)? {
             self.skipped.push(pressure);
