@@ -179,24 +179,21 @@ impl SteadyContact {
         {
             return Ok(read(path, exact, &self.scene, self.speed, pressure));
         }
-        let arrived = match &mut self.path {
-            Some(path) => {
-                path.return_towards(pressure);
-                path.advance_to(pressure)
-            }
-            None => self.set_out(pressure),
-        };
+        if let Some(solution) = self.go_on(pressure) {
+            return Ok(solution);
+        }
+        // Another path may get there: which one ends depends on its steps.
+        let known = self.path.take();
+        if let Some(solution) = self.set_out(pressure) {
+            return Ok(solution);
+        }
+        self.path = known.or(self.path.take());
         let ended = |reached| FemError::PathEnded {
             wanted: pressure,
             columns: self.options.columns,
             reached,
         };
         let Some(path) = &mut self.path else { return Err(ended(PathEnd::NotStarted)) };
-        if arrived.is_ok()
-            && let Ok(solution) = conclude(path, &self.scene, self.speed)
-        {
-            return Ok(solution);
-        }
         match last_converged(path, &self.scene, self.speed) {
             // What failed at first may succeed at the second attempt: rows are shifted on in parts.
             Some(solution) if solution.mean_pressure == pressure => Ok(solution),
@@ -209,13 +206,20 @@ impl SteadyContact {
         }
     }
 
-    /// A path from a slight contact on the coarsest mesh to the finest one, as far towards the
-    /// pressure as it goes.
-    fn set_out(&mut self, pressure: f64) -> Result<(), Stuck> {
-        let mut meshes = self.meshes().into_iter();
+    /// The solution at a pressure from the points passed before, if there are any.
+    fn go_on(&mut self, pressure: f64) -> Option<SteadySolution> {
+        let path = self.path.as_mut()?;
+        path.return_towards(pressure);
+        path.advance_to(pressure).ok()?;
+        conclude(path, &self.scene, self.speed).ok()
+    }
+
+    /// The solution on a new path, from a slight contact on the coarsest mesh to the finest one; the
+    /// path stays where it ends.
+    fn set_out(&mut self, pressure: f64) -> Option<SteadySolution> {
         let mut path: Option<Path> = None;
         let mut arrived = Err(Stuck);
-        for mesh in &mut meshes {
+        for mesh in self.meshes() {
             let entered = match &mut path {
                 Some(path) => path.refine(&mesh),
                 None => Err(Stuck),
@@ -227,7 +231,8 @@ impl SteadyContact {
             arrived = path.as_mut().map_or(Err(Stuck), |path| path.advance_to(pressure));
         }
         self.path = path;
-        arrived
+        arrived.ok()?;
+        conclude(self.path.as_mut()?, &self.scene, self.speed).ok()
     }
 
     /// From the coarsest to the wanted mesh.
