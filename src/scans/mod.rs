@@ -6,6 +6,7 @@
 mod decode;
 pub mod description;
 pub mod error;
+pub mod file;
 mod text;
 
 pub use description::TextFormat;
