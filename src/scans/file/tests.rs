@@ -150,7 +150,8 @@ fn every_integer_type_of_sdf_has_its_mark_of_missing_points() {
 
 #[test]
 fn floating_point_marks_of_sdf_never_become_heights() {
-    for mark in [f64::NAN, f64::MAX, -f64::MAX, 1.7e308, -1.7e308, f64::INFINITY, f64::NEG_INFINITY] {
+    for mark in [f64::NAN, f64::MAX, -f64::MAX, 1.7e308, -1.7e308, f64::INFINITY, f64::NEG_INFINITY]
+    {
         let heights: Vec<u8> = [1.0, mark, 3.0].iter().flat_map(|v| v.to_le_bytes()).collect();
         let scan = parse(&sdf("bISO-1.0", 3, 1, 7, &heights)).unwrap();
         assert_eq!((scan.missing(), scan.mean()), (1, 2.0 * 1e-6));
