@@ -237,6 +237,9 @@ pub fn inputs(files: &[ScanFile]) -> Vec<Input> {
         .collect()
 }
 
+/// Windows of a scan, and what became of it.
+type Conditioned = (Vec<LineScan>, ConditioningReport);
+
 /// Reads and conditions the scan files and writes the results; returns warnings.
 ///
 /// # Errors
@@ -248,7 +251,7 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let done = std::sync::atomic::AtomicU64::new(0);
     // Collected first and judged then: a parallel search for an error finds any.
-    let read: Vec<Result<Vec<(Vec<LineScan>, ConditioningReport)>, StageError>> = files
+    let read: Vec<Result<Vec<Conditioned>, StageError>> = files
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
