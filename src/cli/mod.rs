@@ -3,6 +3,7 @@
 //! Results go to standard output, everything else to standard error. Exit code 0 is success, 1 a
 //! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
 
+mod convert;
 mod error;
 mod export;
 mod inspect;
@@ -43,6 +44,7 @@ enum Command {
     Solve(solve::Solve),
     Synth(synth::Synth),
     Inspect(inspect::Inspect),
+    Convert(convert::Convert),
 }
 
 impl Arguments {
@@ -58,6 +60,7 @@ impl Arguments {
             Command::Solve(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
+            Command::Convert(command) => command.run(self.quiet),
         }
     }
 }

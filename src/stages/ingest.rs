@@ -6,9 +6,10 @@ use crate::artifact::{
     ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Input, Metadata,
     Row, RunView, SchemaVersion,
 };
-use crate::recipe::Violation;
+use crate::recipe::{Violation, demand};
+use crate::scans::file::{Grid, MapLines, parse_file};
 use crate::scans::{TextFormat, parse_text};
-use crate::surface::{Conditioning, ConditioningReport, LineScan, condition};
+use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,8 +25,16 @@ pub const REVISION: u32 = 2;
 pub struct Ingest {
     /// Scan files, and folders of which every file is a scan.
     pub scans: Vec<PathBuf>,
-    /// How the text files are to be read.
-    pub text: TextFormat,
+    /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD) are told
+    /// by their content and need no description.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<TextFormat>,
+    /// Lines of height maps that are taken as line scans, `rows` or `columns`. Required for maps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map_lines: Option<MapLines>,
+    /// Every how many lines of a height map one is taken; 1 takes all.
+    #[serde(default = "every_line", skip_serializing_if = "is_every_line")]
+    pub map_line_step: usize,
     /// How the scans are brought to equal spacing and freed of faults and form.
     #[serde(default)]
     pub conditioning: Conditioning,
@@ -33,9 +42,20 @@ pub struct Ingest {
 
 impl Ingest {
     pub(crate) fn check(&self) -> Result<(), Violation> {
-        self.text.validate()?;
+        self.text.as_ref().map_or(Ok(()), TextFormat::validate)?;
+        demand(self.map_line_step > 0, "ingest.map_line_step", self.map_line_step, "1 or more")?;
         Ok(self.conditioning.validate()?)
     }
+}
+
+fn every_line() -> usize {
+    1
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_every_line(step: &usize) -> bool {
+    *step == every_line()
 }
 
 /// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
@@ -217,6 +237,9 @@ pub fn inputs(files: &[ScanFile]) -> Vec<Input> {
         .collect()
 }
 
+/// Windows of a scan, and what became of it.
+type Conditioned = (Vec<LineScan>, ConditioningReport);
+
 /// Reads and conditions the scan files and writes the results; returns warnings.
 ///
 /// # Errors
@@ -228,30 +251,33 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let done = std::sync::atomic::AtomicU64::new(0);
     // Collected first and judged then: a parallel search for an error finds any.
-    let read: Vec<Result<(Vec<LineScan>, ConditioningReport), StageError>> = files
+    let read: Vec<Result<Vec<Conditioned>, StageError>> = files
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
             let bytes = std::fs::read(&file.path)
                 .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
-            let name = file.path.display().to_string();
-            let mut scan = parse_text(&name, &bytes, &ingest.text)?;
-            scan.name.clone_from(&file.name);
-            let conditioned = condition(&scan, &ingest.conditioning)?;
+            let conditioned = read_scans(ingest, file, &bytes)?
+                .iter()
+                .map(|scan| condition(scan, &ingest.conditioning))
+                .collect::<Result<Vec<_>, _>>()?;
             let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             (context.progress)(count, files.len() as u64);
             Ok(conditioned)
         })
         .collect();
     let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
-    check_equal_grids(read.iter().flat_map(|(windows, _)| windows))?;
-    share_spacing(&mut read.iter_mut().flat_map(|(windows, _)| windows).collect::<Vec<_>>());
+    check_equal_grids(read.iter().flatten().flat_map(|(windows, _)| windows))?;
+    let windows = read.iter_mut().flatten().flat_map(|(windows, _)| windows);
+    share_spacing(&mut windows.collect::<Vec<_>>());
     let datasets: Vec<ArrayDataset> = files
         .iter()
         .zip(&read)
+        .flat_map(|(file, scans)| scans.iter().map(move |scan| (file, scan)))
         .flat_map(|(file, (windows, _))| windows.iter().map(|window| dataset(window, file)))
         .collect();
-    let reports: Vec<&ConditioningReport> = read.iter().map(|(_, report)| report).collect();
+    let reports: Vec<&ConditioningReport> =
+        read.iter().flatten().map(|(_, report)| report).collect();
     let pending = &mut context.pending;
     pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, SCANS_DESCRIPTION, &datasets)?;
     let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
@@ -259,6 +285,27 @@ pub fn run(
     let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
     pending.write_table(WINDOWS_FILE, &rows, &Metadata::new())?;
     Ok(warnings(&reports))
+}
+
+/// The line scans of a file: one, or the chosen lines of a height map.
+fn read_scans(ingest: &Ingest, file: &ScanFile, bytes: &[u8]) -> Result<Vec<RawScan>, StageError> {
+    let name = file.path.display().to_string();
+    if let Some(scan) = parse_file(&name, bytes)? {
+        let lines = match (scan.grid, ingest.map_lines) {
+            (_, Some(lines)) => lines,
+            (Grid::Profile { .. }, None) => MapLines::Rows,
+            (Grid::Map { columns, rows, .. }, None) => {
+                return Err(StageError::MapLines { path: file.path.clone(), rows, columns });
+            }
+        };
+        return Ok(scan.line_scans(&file.name, lines, ingest.map_line_step));
+    }
+    let Some(format) = &ingest.text else {
+        return Err(StageError::NoTextFormat { path: file.path.clone() });
+    };
+    let mut scan = parse_text(&name, bytes, format)?;
+    scan.name.clone_from(&file.name);
+    Ok(vec![scan])
 }
 
 fn check_equal_grids<'a>(

@@ -131,6 +131,25 @@ pub enum StageError {
     /// A scan file.
     #[error(transparent)]
     Scan(#[from] crate::scans::ScanError),
+    /// An instrument file.
+    #[error(transparent)]
+    File(#[from] crate::scans::FileError),
+    /// A height map without a word on how to take line scans from it.
+    #[error("{} is a height map of {rows} rows of {columns} points: set ingest.map_lines to \"rows\" or \"columns\"", path.display())]
+    MapLines {
+        /// The file.
+        path: PathBuf,
+        /// Its rows.
+        rows: usize,
+        /// Points of a row.
+        columns: usize,
+    },
+    /// A text file without a description.
+    #[error("{} is no known file of an instrument; if it is text, describe it in [ingest.text] (`asperity inspect` on it makes a proposal)", path.display())]
+    NoTextFormat {
+        /// The file.
+        path: PathBuf,
+    },
     /// A scan that cannot be conditioned.
     #[error(transparent)]
     Conditioning(#[from] crate::surface::ConditioningError),

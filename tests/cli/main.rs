@@ -4,6 +4,7 @@
 mod common;
 
 mod campaign;
+mod files;
 mod inspect;
 mod solve;
 mod solve_fem;

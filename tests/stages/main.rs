@@ -9,6 +9,7 @@ mod changes;
 mod damage;
 mod golden;
 mod hybrid;
+mod instrument_files;
 mod interruption;
 mod scans;
 mod schemas;

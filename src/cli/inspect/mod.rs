@@ -2,9 +2,11 @@
 
 mod artifact;
 mod folder;
+mod instrument;
 mod provenance;
 mod scan;
 mod solve;
+mod text_shape;
 
 use std::fs::File;
 use std::io::Read;
@@ -15,24 +17,30 @@ use serde::Serialize;
 
 use super::CliError;
 use super::output::{json, print};
+use crate::scans::file::{Family, Grid, read_file};
 use artifact::{Arrays, Table};
 use folder::{ManifestFile, Run, Stage};
-use scan::{Scan, ScanOptions};
+use instrument::InstrumentFile;
+use scan::Scan;
+pub(super) use scan::ScanOptions;
 use solve::Solve;
+use text_shape::TextShape;
 
 const EXAMPLES: &str = "\
 Examples:
   A table, arrays, a manifest, the folder of a stage or of a whole run:
     asperity inspect runs/asphalt/bem/solves.arrow
     asperity inspect runs/asphalt
-  A text scan; its units are never guessed:
+  A file of an instrument (SDF, X3P, Digital Surf, ERD):
+    asperity inspect specimen.x3p --json
+  A text scan: first what it looks like, then with its units, which are never guessed:
+    asperity inspect data/scans/specimen/scan_01.txt
     asperity inspect data/scans/specimen/scan_01.txt --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um";
 
 /// Show what a file or folder holds: schema, units, shape, provenance, first rows.
 ///
 /// PATH is an Arrow table, an HDF5 file of arrays, a manifest, a stored solve, the folder of a stage
-/// or of a run, or
-/// a text scan. The kind is found by looking into it; the name does not matter.
+/// or of a run, a file of an instrument, or a text scan. The kind is found by looking into it; the name does not matter.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Inspect {
@@ -54,7 +62,13 @@ enum Finding {
     Manifest(ManifestFile),
     Stage(Stage),
     Run(Run),
+    /// Instrument file of one line.
+    Profile(InstrumentFile),
+    /// Instrument file of a height map.
+    Map(InstrumentFile),
     Scan(Scan),
+    /// Text that no description goes with.
+    Text(TextShape),
     Solve(Solve),
 }
 
@@ -76,16 +90,37 @@ impl Inspect {
             Format::Hdf5 => Finding::Arrays(Arrays::read(path)?),
             Format::Json if Solve::is_in(path) => Finding::Solve(Solve::read(path)?),
             Format::Json => Finding::Manifest(ManifestFile::read(path)?),
-            Format::Text => Finding::Scan(self.scan.read(path, &start)?),
+            Format::Instrument => instrument_file(path)?,
+            Format::Text => self.text_scan(path)?,
             Format::Empty => return Err(foreign(path, "is empty")),
             Format::Binary => {
                 return Err(foreign(
                     path,
-                    "is none of Arrow table, HDF5 file, manifest and text; convert it to text first if it is a scan",
+                    "is none of Arrow table, HDF5 file, manifest and text; nor a known file of an instrument (SDF, X3P, Digital Surf, ERD); convert it to text first if it is a scan",
                 ));
             }
         })
     }
+
+    /// A scan where a description is given, else what the text looks like.
+    fn text_scan(&self, path: &Path) -> Result<Finding, CliError> {
+        if self.scan.are_given() {
+            return Ok(Finding::Scan(self.scan.read(path)?));
+        }
+        Ok(Finding::Text(TextShape::read(path)?))
+    }
+}
+
+/// Reads the instrument file at `path`.
+fn instrument_file(path: &Path) -> Result<Finding, CliError> {
+    let scan = read_file(path).map_err(CliError::input)?;
+    // The first bytes have told the family, and the file is read again.
+    let scan = scan.ok_or_else(|| foreign(path, "changes while it is read"))?;
+    let file = InstrumentFile::of(path, &scan);
+    Ok(match scan.grid {
+        Grid::Profile { .. } => Finding::Profile(file),
+        Grid::Map { .. } => Finding::Map(file),
+    })
 }
 
 impl Finding {
@@ -96,7 +131,9 @@ impl Finding {
             Self::Manifest(manifest) => manifest.text(),
             Self::Stage(stage) => stage.text(),
             Self::Run(run) => run.text(),
+            Self::Profile(file) | Self::Map(file) => file.text(),
             Self::Scan(scan) => scan.text(),
+            Self::Text(shape) => shape.text(),
             Self::Solve(solve) => solve.text(),
         }
     }
@@ -112,6 +149,7 @@ enum Format {
     Arrow,
     Hdf5,
     Json,
+    Instrument,
     Text,
     Binary,
     Empty,
@@ -124,6 +162,8 @@ impl Format {
             Self::Arrow
         } else if start.starts_with(b"\x89HDF\r\n\x1a\n") {
             Self::Hdf5
+        } else if Family::detect(start).is_some() {
+            Self::Instrument
         } else if start.is_empty() {
             Self::Empty
         } else if start.trim_ascii_start().starts_with(b"{") {
@@ -149,14 +189,15 @@ mod tests {
 
     #[test]
     fn formats_are_told_by_content() {
-        let cases: [(&[u8], Format); 8] = [
+        let cases: [(&[u8], Format); 9] = [
             (b"ARROW1\0\0", Format::Arrow),
             (b"\x89HDF\r\n\x1a\n\0", Format::Hdf5),
             (b"\n {\"schema\": 1}", Format::Json),
             (b"# x z\n0 1\n", Format::Text),
             (b"x_\xb5m;z_\xb5m\n", Format::Text),
             (b"\xff\xfe1\0;\0", Format::Text),
-            (b"PK\x03\x04\x14\0\0", Format::Binary),
+            (b"PK\x03\x04\x14\0\0", Format::Instrument),
+            (b"\x7fELF\0\0", Format::Binary),
             (b"", Format::Empty),
         ];
         for (bytes, format) in cases {

@@ -18,7 +18,7 @@ const FIRST_POINTS: usize = 5;
 /// How a text scan is to be read; the keys `[ingest.format]` of a recipe as options.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Text scans")]
-pub(super) struct ScanOptions {
+pub(in crate::cli) struct ScanOptions {
     /// Between the cells: tab, comma, semicolon, whitespace or one character.
     #[arg(long, value_parser = values::separator)]
     separator: Option<Separator>,
@@ -71,20 +71,25 @@ pub(super) struct ScanOptions {
 }
 
 impl ScanOptions {
-    /// Reads the text file at `path`, which begins with `start`.
+    /// Whether any of the options that describe a text is given; the ones with defaults need others.
+    pub(super) fn are_given(&self) -> bool {
+        self.separator.is_some()
+            || self.x_column.is_some()
+            || self.x_unit.is_some()
+            || self.x_spacing_um.is_some()
+            || self.z_column.is_some()
+            || self.z_unit.is_some()
+    }
+
+    /// Reads the text file at `path`.
     ///
     /// # Errors
     /// [`CliError::Input`].
-    pub(super) fn read(&self, path: &Path, start: &[u8]) -> Result<Scan, CliError> {
+    pub(super) fn read(&self, path: &Path) -> Result<Scan, CliError> {
         let format = self.format().map_err(|needed| {
-            let lines: String = String::from_utf8_lossy(start)
-                .lines()
-                .take(FIRST_POINTS)
-                .map(|line| format!("\n  | {}", line.chars().take(100).collect::<String>()))
-                .collect();
             let problem = format!(
                 "is no artifact but text; to read it as a scan, give {needed} as well (units are never \
-                 guessed). It begins with{lines}"
+                 guessed); without options, inspect tells what it looks like"
             );
             foreign(path, &problem)
         })?;
@@ -94,7 +99,7 @@ impl ScanOptions {
 
     /// # Errors
     /// The options that are needed and not given.
-    fn format(&self) -> Result<TextFormat, String> {
+    pub(in crate::cli) fn format(&self) -> Result<TextFormat, String> {
         let spaced = self.x_spacing_um.is_some();
         let needed: Vec<&str> = [
             ("--separator", self.separator.is_none()),

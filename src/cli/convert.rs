@@ -1,0 +1,153 @@
+//! `asperity convert`: scans from one format to another.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::CliError;
+use super::inspect::ScanOptions;
+use super::output::{print, write_file};
+use crate::scans::file::{Grid, ScanFile, read_file, write_x3p};
+use crate::scans::read_text;
+use crate::surface::RawScan;
+
+/// Positions that are further than this share of the spacing from equal spacing are information
+/// that X3P has no place for.
+const LARGEST_JITTER: f64 = 0.1;
+
+const EXAMPLES: &str = "\
+Examples:
+  A height map of an instrument as X3P:
+    asperity convert surface.sur --to surface.x3p
+  A text scan, described as for inspect, as X3P and as plain CSV in metres:
+    asperity convert scan_01.txt --to scan_01.x3p --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um
+    asperity convert scan_01.x3p --to scan_01.csv";
+
+/// Convert a scan to X3P (ISO 25178-72) or CSV.
+///
+/// FILE is an instrument file (SDF, X3P, Digital Surf, ERD), told by its content, or text described
+/// by the options of `inspect`. The new format is told by the name: .x3p (64-bit binary heights, MD5
+/// checksums, mask of missing points) or .csv (x_m, for maps y_m, and z_m; empty where missing).
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Convert {
+    /// The scan.
+    file: PathBuf,
+    /// New file, *.x3p or *.csv.
+    #[arg(long, value_name = "OUT")]
+    to: PathBuf,
+    /// Overwrite the new file if it is there.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    scan: ScanOptions,
+}
+
+impl Convert {
+    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        let extension = self.to.extension().unwrap_or_default().to_ascii_lowercase();
+        match extension.to_str() {
+            Some("x3p") => {
+                let bytes = write_x3p(&self.on_grid()?).map_err(CliError::failure)?;
+                write_file(&self.to, self.force, |out| out.write_all(&bytes))?;
+            }
+            Some("csv") => write_file(&self.to, self.force, self.csv()?)?,
+            _ => {
+                let name = self.to.display();
+                return Err(CliError::input(format!("{name}: call the new file *.x3p or *.csv")));
+            }
+        }
+        print(&if quiet { String::new() } else { format!("{}\n", self.to.display()) })
+    }
+
+    fn native(&self) -> Result<Option<ScanFile>, CliError> {
+        read_file(&self.file).map_err(CliError::input)
+    }
+
+    fn text(&self) -> Result<RawScan, CliError> {
+        let format = self.scan.format().map_err(|needed| {
+            CliError::input(format!(
+                "{} is no instrument file; to read it as text, give {needed} as well",
+                self.file.display()
+            ))
+        })?;
+        read_text(&self.file, &format).map_err(CliError::input)
+    }
+
+    fn on_grid(&self) -> Result<ScanFile, CliError> {
+        match self.native()? {
+            Some(scan) => Ok(scan),
+            None => equally_spaced(&self.file, self.text()?),
+        }
+    }
+
+    /// What writes the CSV file.
+    fn csv(&self) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()> + use<>, CliError> {
+        let native = self.native()?;
+        let text = if native.is_none() { Some(self.text()?) } else { None };
+        Ok(move |out: &mut dyn Write| match (native, text) {
+            (Some(scan), _) => write_grid(&scan, out),
+            (None, Some(scan)) => write_points(&scan.positions, &scan.heights, out),
+            (None, None) => Ok(()),
+        })
+    }
+}
+
+/// A text scan on the spacing of its first and last point.
+fn equally_spaced(path: &Path, scan: RawScan) -> Result<ScanFile, CliError> {
+    let (Some(first), Some(last)) = (scan.positions.first(), scan.positions.last()) else {
+        return Err(CliError::input(format!("{} holds no points", path.display())));
+    };
+    // The reader gives two points or more, at growing positions.
+    let spacing = (last - first) / (scan.positions.len() - 1) as f64;
+    let deviation = |(i, x): (usize, &f64)| (x - first - i as f64 * spacing).abs();
+    let largest = scan.positions.iter().enumerate().map(deviation).fold(0.0, f64::max);
+    if largest > LARGEST_JITTER * spacing {
+        return Err(CliError::input(format!(
+            "{}: a position is {:.3} um off equal spacing of {:.3} um, for which X3P has no place; \
+             convert it to .csv",
+            path.display(),
+            largest * 1e6,
+            spacing * 1e6
+        )));
+    }
+    Ok(ScanFile {
+        format: "text".into(),
+        detected: "described by options".into(),
+        grid: Grid::Profile { spacing },
+        heights: scan.heights,
+        instrument: Vec::new(),
+    })
+}
+
+fn write_grid(scan: &ScanFile, out: &mut dyn Write) -> io::Result<()> {
+    match scan.grid {
+        Grid::Profile { spacing } => {
+            let positions: Vec<f64> = (0..scan.heights.len()).map(|i| i as f64 * spacing).collect();
+            write_points(&positions, &scan.heights, out)
+        }
+        Grid::Map { columns, spacing_x, spacing_y, .. } => {
+            writeln!(out, "x_m,y_m,z_m")?;
+            for (index, height) in scan.heights.iter().enumerate() {
+                let (row, column) = (index / columns, index % columns);
+                let (x, y) = (column as f64 * spacing_x, row as f64 * spacing_y);
+                writeln!(out, "{x:e},{y:e},{}", cell(*height))?;
+            }
+            Ok(())
+        }
+    }
+}
+
+fn write_points(positions: &[f64], heights: &[f64], out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "x_m,z_m")?;
+    for (position, height) in positions.iter().zip(heights) {
+        writeln!(out, "{position:e},{}", cell(*height))?;
+    }
+    Ok(())
+}
+
+/// The shortest text that is read back as the same number.
+fn cell(height: f64) -> String {
+    if height.is_nan() { String::new() } else { format!("{height:e}") }
+}

@@ -1,0 +1,166 @@
+//! ERD, the road profile of the Engineering Research Division of UMTRI, with its numbers as text.
+//!
+//! The first line is `ERDFILEV2.00`. The second has, between commas: number of channels, number
+//! of samples (or -1), records, bytes, a key for the kind of numbers (5 is text), the step of x.
+//! Keywords of eight letters follow up to `END`, then a line of one number per channel for each
+//! sample.
+
+use super::bytes::count;
+use super::error::{FileProblem, Place, unexpected};
+use super::{Grid, ScanFile, metres_of};
+
+/// Reads an ERD file; its first channel of a length is the profile.
+pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
+    let (text, _) = encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes);
+    let lines: Vec<&str> = text.lines().collect();
+    let layout = Layout::read(lines.get(1).copied().unwrap_or_default())?;
+    let end =
+        lines.iter().position(|line| line.trim().eq_ignore_ascii_case("END")).ok_or_else(|| {
+            unexpected(Place::Line(lines.len()), "the header", "not ended", "a line END")
+        })?;
+    let keywords = Keywords { lines: lines.get(2..end).unwrap_or_default() };
+    let (place, x_unit) = keywords.find("XUNITS").unwrap_or((2, String::new()));
+    let spacing = layout.step
+        * metres_of(&x_unit).ok_or_else(|| {
+            unexpected(
+                Place::Line(place),
+                "the unit of x (XUNITS)",
+                &x_unit,
+                "a length, such as m or ft",
+            )
+        })?;
+    let (place, units) = keywords.find("UNITSNAM").unwrap_or((2, String::new()));
+    let channel = |number| columns_of_eight(&units, number);
+    let (profile, metres) = (0..layout.channels)
+        .find_map(|number| Some((number, metres_of(&channel(number))?)))
+        .ok_or_else(|| {
+            unexpected(
+                Place::Line(place),
+                "the units (UNITSNAM)",
+                &units,
+                "a length, such as mm or in",
+            )
+        })?;
+    let heights = layout.heights(&lines, end + 1, profile, metres)?;
+    let mut instrument: Vec<(String, String)> =
+        [("TITLE", "title"), ("DATE", "created"), ("INSTRUMT", "model")]
+            .into_iter()
+            .filter_map(|(key, name)| Some((name.to_owned(), keywords.find(key)?.1)))
+            .collect();
+    if let Some((_, names)) = keywords.find("SHORTNAM") {
+        instrument.push(("channel".into(), columns_of_eight(&names, profile)));
+    }
+    Ok(ScanFile {
+        format: "ERD".into(),
+        detected: format!(
+            "the first line is `{}`: road profile as text, channel {} of {} read",
+            lines.first().copied().unwrap_or_default().trim(),
+            profile + 1,
+            layout.channels
+        ),
+        grid: Grid::Profile { spacing },
+        heights,
+        instrument,
+    })
+}
+
+struct Layout {
+    channels: usize,
+    /// `None` where the file leaves it open.
+    samples: Option<usize>,
+    step: f64,
+}
+
+impl Layout {
+    fn read(line: &str) -> Result<Self, FileProblem> {
+        const MOST_CHANNELS: u64 = 1024;
+        let place = || Place::Line(2);
+        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        let cell = |place_in_line: usize, what| {
+            let text = cells.get(place_in_line).copied().unwrap_or_default();
+            text.parse::<f64>().map_err(|_| unexpected(place(), what, text, "a number"))
+        };
+        let whole = |place_in_line, what| {
+            let value = cell(place_in_line, what)?;
+            if value.fract() != 0.0 || value.abs() > 1e15 {
+                return Err(unexpected(place(), what, value, "a whole number"));
+            }
+            Ok(value as i64)
+        };
+        let channels = whole(0, "the number of channels")?;
+        let channels = u64::try_from(channels)
+            .ok()
+            .filter(|channels| (1..=MOST_CHANNELS).contains(channels))
+            .ok_or_else(|| unexpected(place(), "the number of channels", channels, "1 to 1024"))?;
+        let samples = whole(1, "the number of samples")?;
+        let samples = match u64::try_from(samples) {
+            Ok(samples) => Some(count(place(), channels, samples)?.1),
+            Err(_) => None,
+        };
+        match whole(4, "the kind of numbers")? {
+            5 => {}
+            kind => {
+                return Err(FileProblem::Unsupported {
+                    place: place(),
+                    what: format!("numbers of kind {kind}, in a second file"),
+                    advice: "save the profile as text (kind 5)",
+                });
+            }
+        }
+        Ok(Self { channels: channels as usize, samples, step: cell(5, "the step of x")? })
+    }
+
+    fn heights(
+        &self,
+        lines: &[&str],
+        start: usize,
+        channel: usize,
+        metres: f64,
+    ) -> Result<Vec<f64>, FileProblem> {
+        let mut heights = Vec::new();
+        for (index, line) in lines.iter().enumerate().skip(start) {
+            let place = || Place::Line(index + 1);
+            let words = line.split(|c: char| c == ',' || c.is_whitespace());
+            let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+            if words.is_empty() {
+                continue;
+            }
+            if words.len() != self.channels {
+                return Err(unexpected(place(), "the number of cells", words.len(), self.channels));
+            }
+            let value: f64 = words[channel]
+                .parse()
+                .map_err(|_| unexpected(place(), "a height", words[channel], "a number"))?;
+            heights.push(value * metres);
+        }
+        match self.samples {
+            Some(samples) if samples != heights.len() => {
+                let place = Place::Line(lines.len());
+                Err(unexpected(place, "the number of samples", heights.len(), samples))
+            }
+            _ => Ok(heights),
+        }
+    }
+}
+
+/// Lines of a keyword of eight letters and its value.
+struct Keywords<'a> {
+    lines: &'a [&'a str],
+}
+
+impl Keywords<'_> {
+    /// Number of the line and value.
+    fn find(&self, keyword: &str) -> Option<(usize, String)> {
+        self.lines.iter().enumerate().find_map(|(index, line)| {
+            let (name, value) = line.split_at_checked(8).unwrap_or((line, ""));
+            // A UNITSNAM keeps its blanks: they separate names of eight letters.
+            (name.trim().eq_ignore_ascii_case(keyword))
+                .then(|| (index + 3, value.trim_end().to_owned()))
+        })
+    }
+}
+
+/// The name at a place of a list in columns of eight letters.
+fn columns_of_eight(names: &str, place: usize) -> String {
+    names.chars().skip(8 * place).take(8).collect::<String>().trim().to_owned()
+}

@@ -1,0 +1,338 @@
+//! What a text file looks like, and the description that would read it.
+//!
+//! Encoding, separator, decimal mark, header and columns are found from the content, units only
+//! where the file states them. Nothing is read by this: it is a proposal for the recipe.
+
+mod encoding;
+#[cfg(test)]
+mod tests;
+
+use crate::scans::description::{DecimalMark, LengthUnit, Separator};
+use csv::ReaderBuilder;
+use std::fmt::Write;
+
+/// Lines that are looked at; more say nothing new.
+const MOST_LINES: usize = 2000;
+/// Words that stand for a missing height.
+const MISSING_WORDS: [&str; 8] = ["", "nan", "bad", "na", "n/a", "null", "---", "*"];
+
+/// What a text file looks like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextShape {
+    /// Label of the encoding, for `encoding`.
+    pub encoding: &'static str,
+    /// What stands between the cells.
+    pub separator: Separator,
+    /// The decimal mark.
+    pub decimal_mark: DecimalMark,
+    /// Character that starts the lines before the points, if one does.
+    pub comment: Option<char>,
+    /// Lines before the names of the columns, or before the points where there are none.
+    pub skip_lines: usize,
+    /// The line before the names of the columns, if it marks the start of the data.
+    pub skip_until: Option<String>,
+    /// Whether the columns have names.
+    pub header: bool,
+    /// The columns.
+    pub columns: Vec<TextColumn>,
+    /// Lines of points, as far as was looked.
+    pub rows: usize,
+    /// Lines before the points that state a unit, as they stand.
+    pub stated: Vec<String>,
+}
+
+/// A column of a text file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextColumn {
+    /// Its name, empty where there is none.
+    pub name: String,
+    /// The unit in its name.
+    pub unit: Option<LengthUnit>,
+    /// Whether its numbers grow from line to line.
+    pub grows: bool,
+}
+
+impl TextShape {
+    /// Looks at the bytes of a file; `None` where no two lines of numbers follow each other.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let (encoding, text) = encoding::decode(bytes);
+        let lines: Vec<&str> = text.lines().take(MOST_LINES).collect();
+        const SEPARATORS: [Separator; 4] =
+            [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Whitespace];
+        let layouts = SEPARATORS.iter().flat_map(|separator| {
+            [DecimalMark::Point, DecimalMark::Comma]
+                .map(|mark| Layout { separator: *separator, mark })
+        });
+        // The first of equals: more lines of points, then more columns.
+        let (layout, body) = layouts
+            .filter(|layout| layout.is_possible())
+            .filter_map(|layout| Some((layout, layout.body(&lines)?)))
+            .rev_max_by_key(|(_, body)| (body.rows.len(), body.rows[0].len()))?;
+        Some(describe(encoding, layout, &body, &lines))
+    }
+
+    /// The section `[ingest.text]` of a recipe that would read the file; what the file does not
+    /// say stands there as a comment that asks for it.
+    pub fn recipe_section(&self) -> String {
+        let mut text = String::from("[ingest.text]\n");
+        let mut line = |line: String| {
+            // Writing to a text does not fail.
+            let _ = writeln!(text, "{line}");
+        };
+        line(format!("separator = {}", separator_text(self.separator)));
+        if self.decimal_mark == DecimalMark::Comma {
+            line("decimal_mark = \",\"".into());
+        }
+        if let Some(comment) = self.comment {
+            line(format!("comment = {:?}", comment.to_string()));
+        }
+        match &self.skip_until {
+            Some(marker) => line(format!("skip_until = {}", quoted(marker))),
+            None if self.skip_lines > 0 => line(format!("skip_lines = {}", self.skip_lines)),
+            None => {}
+        }
+        if !self.header {
+            line("header = false".into());
+        }
+        let (x, z) = self.proposed_columns();
+        match x {
+            Some(x) => {
+                line(format!("x_column = {}", self.column_text(x)));
+                line(unit_text("x_unit", self.columns[x].unit));
+            }
+            None => {
+                line("# x_spacing_um = ?            # the file does not say it by column".into())
+            }
+        }
+        line(format!("z_column = {}", self.column_text(z)));
+        line(unit_text("z_unit", self.columns[z].unit));
+        if self.encoding != "utf-8" {
+            line(format!("encoding = \"{}\"", self.encoding));
+        }
+        text
+    }
+
+    /// Numbers, from 0, of the columns of positions and heights: positions grow, heights are the
+    /// last column that does not, and columns with a unit come before those without.
+    pub fn proposed_columns(&self) -> (Option<usize>, usize) {
+        let growing: Vec<usize> =
+            (0..self.columns.len()).filter(|&i| self.columns[i].grows).collect();
+        let with_unit = |i: &&usize| self.columns[**i].unit.is_some();
+        let x = match self.columns.len() {
+            1 => None,
+            _ => growing.iter().find(with_unit).or(growing.first()).copied(),
+        };
+        let others: Vec<usize> =
+            (0..self.columns.len()).filter(|i| Some(*i) != x && !growing.contains(i)).collect();
+        let z = others.iter().rev().find(with_unit).or(others.last()).copied();
+        let last = self.columns.len() - 1;
+        (x, z.unwrap_or(if x == Some(last) { 0 } else { last }))
+    }
+
+    fn column_text(&self, number: usize) -> String {
+        let name = &self.columns[number].name;
+        let unique = self.columns.iter().filter(|column| column.name == *name).count() == 1;
+        if self.header && unique && !name.is_empty() {
+            quoted(name)
+        } else {
+            (number + 1).to_string()
+        }
+    }
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+fn unit_text(key: &str, unit: Option<LengthUnit>) -> String {
+    match unit {
+        Some(LengthUnit::Nm) => format!("{key} = \"nm\""),
+        Some(LengthUnit::Um) => format!("{key} = \"um\""),
+        Some(LengthUnit::Mm) => format!("{key} = \"mm\""),
+        Some(LengthUnit::M) => format!("{key} = \"m\""),
+        None => {
+            format!("# {key} = ?                  # the column does not state it: nm, um, mm or m")
+        }
+    }
+}
+
+/// A separator as the recipe writes it.
+pub fn separator_text(separator: Separator) -> &'static str {
+    match separator {
+        Separator::Tab => "\"tab\"",
+        Separator::Comma => "\"comma\"",
+        Separator::Semicolon => "\"semicolon\"",
+        Separator::Whitespace | Separator::Character(_) => "\"whitespace\"",
+    }
+}
+
+/// A way to take lines apart.
+#[derive(Debug, Clone, Copy)]
+struct Layout {
+    separator: Separator,
+    mark: DecimalMark,
+}
+
+/// Lines of points.
+struct Body {
+    /// Place of the first, from 0.
+    start: usize,
+    /// Numbers of each line, NaN where missing.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Layout {
+    fn is_possible(self) -> bool {
+        (self.separator, self.mark) != (Separator::Comma, DecimalMark::Comma)
+    }
+
+    fn cells(self, line: &str) -> Vec<String> {
+        let Some(separator) = self.separator.character() else {
+            return line.split_whitespace().map(str::to_owned).collect();
+        };
+        let mut reader = ReaderBuilder::new()
+            .delimiter(separator as u8)
+            .has_headers(false)
+            .from_reader(line.as_bytes());
+        let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
+        record.iter().map(|cell| cell.trim().to_owned()).collect()
+    }
+
+    fn numbers(self, line: &str) -> Option<Vec<f64>> {
+        let cells = self.cells(line);
+        let numbers: Vec<f64> =
+            cells.iter().map(|cell| self.number(cell)).collect::<Option<_>>()?;
+        numbers.iter().any(|number| number.is_finite()).then_some(numbers)
+    }
+
+    fn number(self, cell: &str) -> Option<f64> {
+        if MISSING_WORDS.contains(&cell.to_lowercase().as_str()) {
+            return Some(f64::NAN);
+        }
+        let point = match self.mark {
+            DecimalMark::Point => cell.to_owned(),
+            DecimalMark::Comma if cell.contains('.') => return None,
+            DecimalMark::Comma => cell.replacen(',', ".", 1),
+        };
+        point.parse().ok().filter(|number: &f64| number.is_finite())
+    }
+
+    /// The longest run of lines of equally many numbers.
+    fn body(self, lines: &[&str]) -> Option<Body> {
+        let mut longest = Body { start: 0, rows: Vec::new() };
+        let mut current = Body { start: 0, rows: Vec::new() };
+        for (index, line) in lines.iter().enumerate() {
+            match self.numbers(line) {
+                Some(row) if current.rows.first().is_some_and(|first| first.len() == row.len()) => {
+                    current.rows.push(row);
+                }
+                Some(row) => {
+                    let before =
+                        std::mem::replace(&mut current, Body { start: index, rows: vec![row] });
+                    longest = longer(longest, before);
+                }
+                None => {
+                    let none = Body { start: index, rows: Vec::new() };
+                    longest = longer(longest, std::mem::replace(&mut current, none));
+                }
+            }
+        }
+        Some(longer(longest, current)).filter(|body| body.rows.len() > 1)
+    }
+}
+
+fn longer(first: Body, second: Body) -> Body {
+    if second.rows.len() > first.rows.len() { second } else { first }
+}
+
+/// The first of the greatest elements; that of the standard library is the last.
+trait FirstMax: Iterator + Sized {
+    fn rev_max_by_key<K: Ord>(self, key: impl Fn(&Self::Item) -> K) -> Option<Self::Item> {
+        self.reduce(|best, next| if key(&next) > key(&best) { next } else { best })
+    }
+}
+
+impl<I: Iterator> FirstMax for I {}
+
+fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str]) -> TextShape {
+    let width = body.rows[0].len();
+    let before = &lines[..body.start];
+    let names = before.last().filter(|line| !line.trim().is_empty()).map(|line| layout.cells(line));
+    let comment = comment_of(before);
+    let named = names.filter(|names| {
+        names.len() >= width && !before.last().is_some_and(|l| is_comment(l, comment))
+    });
+    // A separator at the end of the line makes an empty column.
+    let header = named.is_some();
+    let names = named.unwrap_or_default();
+    let preamble = &before[..before.len() - usize::from(header)];
+    let commented = comment.is_some() && preamble.iter().all(|line| is_comment(line, comment));
+    let marker = preamble.last().map(|line| line.trim());
+    let skip_until = marker.filter(|line| !commented && is_marker(line)).map(str::to_owned);
+    let column = |number: usize| {
+        let name = names.get(number).cloned().unwrap_or_default();
+        let values: Vec<f64> = body.rows.iter().map(|row| row[number]).collect();
+        TextColumn {
+            unit: unit_in(&name),
+            grows: values.windows(2).all(|pair| pair[1] > pair[0]),
+            name,
+        }
+    };
+    TextShape {
+        encoding,
+        separator: layout.separator,
+        decimal_mark: layout.mark,
+        comment: comment.filter(|_| commented),
+        skip_lines: if commented { 0 } else { preamble.len() },
+        skip_until,
+        header,
+        columns: (0..width).map(column).collect(),
+        rows: body.rows.len(),
+        stated: preamble
+            .iter()
+            .filter(|line| states_unit(line))
+            .map(|l| l.trim().to_owned())
+            .collect(),
+    }
+}
+
+fn comment_of(preamble: &[&str]) -> Option<char> {
+    let first = preamble.iter().find_map(|line| line.trim_start().chars().next())?;
+    ['#', '%', '!', ';'].contains(&first).then_some(first)
+}
+
+fn is_comment(line: &str, comment: Option<char>) -> bool {
+    line.trim().is_empty() || comment.is_some_and(|comment| line.trim_start().starts_with(comment))
+}
+
+/// Whether a line before the data is a mark such as `*****DATA*****` or `[Data]`.
+fn is_marker(line: &str) -> bool {
+    let ends = |c: char| "*[]-=<>#:".contains(c);
+    line.starts_with(ends) && line.ends_with(ends) && line.chars().any(char::is_alphabetic)
+}
+
+/// The unit in a name: `x (mm)`, `z [µm]`, `x_mm`, `Depth mm`.
+fn unit_in(name: &str) -> Option<LengthUnit> {
+    let parts: Vec<&str> =
+        name.split(|c: char| "()[]{}/_, ".contains(c)).filter(|part| !part.is_empty()).collect();
+    // A lone letter is the name of a quantity more often than the metre.
+    if parts.len() < 2 {
+        return None;
+    }
+    match parts.last()?.to_lowercase().as_str() {
+        "nm" => Some(LengthUnit::Nm),
+        "um" | "\u{b5}m" | "\u{3bc}m" => Some(LengthUnit::Um),
+        "mm" => Some(LengthUnit::Mm),
+        "m" => Some(LengthUnit::M),
+        _ => None,
+    }
+}
+
+fn states_unit(line: &str) -> bool {
+    let words = line.split(|c: char| c.is_whitespace() || "()[],;=".contains(c));
+    let lower = line.to_lowercase();
+    words
+        .map(str::to_lowercase)
+        .any(|word| ["nm", "um", "\u{b5}m", "\u{3bc}m", "mm"].contains(&&*word))
+        || (lower.contains("unit") && lower.trim_end().ends_with('m'))
+}

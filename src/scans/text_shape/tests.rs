@@ -1,0 +1,98 @@
+//! Shapes of texts from laboratories.
+
+use super::*;
+use crate::scans::{TextFormat, parse_text};
+use std::path::PathBuf;
+
+fn shape(bytes: &[u8]) -> TextShape {
+    TextShape::of(bytes).unwrap()
+}
+
+/// The description that the proposed section of a recipe is.
+fn description(shape: &TextShape) -> TextFormat {
+    #[derive(serde::Deserialize)]
+    struct Recipe {
+        ingest: Ingest,
+    }
+    #[derive(serde::Deserialize)]
+    struct Ingest {
+        text: TextFormat,
+    }
+    toml::from_str::<Recipe>(&shape.recipe_section()).unwrap().ingest.text
+}
+
+#[test]
+fn a_preamble_with_a_marker_and_a_counter_is_seen_through() {
+    let text = "Road Name\tCAPTIF\t\nStart Pos (m)\t0\t\n*****DATA*****\t\t\n\
+                Data Point No:\tDistance (mm)\tDepth (mm)\n1.000\t0.000\t-3.015\n2.000\t0.037\t-3.004\n\
+                2.000\t0.075\tNaN\n3.000\t0.112\t-2.9\n";
+    let found = shape(text.as_bytes());
+    assert_eq!((found.separator, found.decimal_mark), (Separator::Tab, DecimalMark::Point));
+    assert_eq!((found.skip_until.as_deref(), found.rows), (Some("*****DATA*****"), 4));
+    let format = description(&found);
+    let scan = parse_text("captif", text.as_bytes(), &format).unwrap();
+    assert_eq!(scan.heights[..2], [-3.015 / 1e3, -3.004 / 1e3]);
+    assert!(scan.heights[2].is_nan());
+}
+
+#[test]
+fn decimal_commas_latin1_and_quoted_cells() {
+    let text = b"Pr\xfcfer;M\xfcller\n\"Weg [mm]\";\"H\xf6he [\xb5m]\"\n\"0,0\";\"12,5\"\n\"0,1\";\"-3,25\"\n";
+    let found = shape(text);
+    assert_eq!((found.encoding, found.decimal_mark), ("windows-1252", DecimalMark::Comma));
+    let units: Vec<_> = found.columns.iter().map(|column| column.unit).collect();
+    assert_eq!(units, [Some(LengthUnit::Mm), Some(LengthUnit::Um)]);
+    let scan = parse_text("a", text, &description(&found)).unwrap();
+    assert_eq!(scan.heights, [12.5 / 1e6, -3.25 / 1e6]);
+}
+
+#[test]
+fn korean_text_is_told_by_its_hangul() {
+    let (bytes, ..) =
+        encoding_rs::EUC_KR.encode("측정 결과,\n거리(mm),높이(um)\n0.0,1.5\n0.1,2.5\n0.2,1.0\n");
+    let found = shape(&bytes);
+    assert_eq!((found.encoding, found.separator), ("euc-kr", Separator::Comma));
+    let scan = parse_text("a", &bytes, &description(&found)).unwrap();
+    assert_eq!(scan.heights, [1.5 / 1e6, 2.5 / 1e6, 1.0 / 1e6]);
+}
+
+#[test]
+fn units_that_are_not_stated_are_asked_for() {
+    let found = shape(b"   1.0e+00   2.0\n   2.0e+00   1.0\n   3.5e+00   4.0\n");
+    let section = found.recipe_section();
+    assert!(section.contains("# x_unit = ?") && section.contains("# z_unit = ?"), "{section}");
+    assert!(section.contains("header = false") && section.contains("x_column = 1"), "{section}");
+}
+
+#[test]
+fn text_without_numbers_has_no_shape() {
+    for bytes in [b"".as_slice(), b"no numbers\nat all\n", b"1\n", &[0xff, 0, 1], b"\xff\xfe"] {
+        assert_eq!(TextShape::of(bytes), None, "{bytes:?}");
+    }
+}
+
+#[test]
+fn utf_16_without_a_mark_is_told() {
+    let bytes: Vec<u8> = "0;1\n1;2\n2;1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_eq!(shape(&bytes).encoding, "utf-16le");
+}
+
+/// The texts beside the reference files.
+#[test]
+fn reference_texts_have_their_shapes() {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared"));
+    let read = |name: &str| std::fs::read(folder.join(name));
+    let Ok(german) = read("formats/text/gwyddion-export-german.txt") else {
+        println!("skipped: {} is not there", folder.display());
+        return;
+    };
+    let german = shape(&german);
+    assert_eq!((german.comment, german.columns.len(), german.rows), (Some('#'), 3, 4));
+    assert_eq!(german.stated.len(), 3, "{german:?}");
+    let nonuniform = shape(&read("formats/text/nonuniform.asc").unwrap());
+    assert_eq!((nonuniform.header, nonuniform.columns.len()), (false, 2));
+    assert_eq!(nonuniform.proposed_columns(), (Some(0), 1));
+    let captif = read("scans/captif/20211011_aylesbury_dec_station_0.dat").unwrap();
+    let scan = parse_text("captif", &captif, &description(&shape(&captif))).unwrap();
+    assert_eq!(scan.heights.len(), 51067);
+}
