@@ -1,5 +1,9 @@
 //! ingest: from scan files to windows of equal spacing.
 
+mod faults;
+
+pub use faults::{FAULTS_FILE, FaultRow};
+
 use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
@@ -9,6 +13,7 @@ use crate::artifact::{
 use crate::recipe::Violation;
 use crate::scans::{TextFormat, parse_text};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, condition};
+use faults::{fault_rows, jump_warning};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,7 +21,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -114,7 +119,7 @@ impl Row for WindowRow {
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     let scans = SchemaVersion { schema: SCANS_SCHEMA.into(), version: SCANS_VERSION };
-    vec![scans, schema_of::<ScanReportRow>(), schema_of::<WindowRow>()]
+    vec![scans, schema_of::<ScanReportRow>(), schema_of::<FaultRow>(), schema_of::<WindowRow>()]
 }
 
 /// What [`SCANS_FILE`] holds.
@@ -256,9 +261,13 @@ pub fn run(
     pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, SCANS_DESCRIPTION, &datasets)?;
     let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
     pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
+    let rows: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
+    pending.write_table(FAULTS_FILE, &rows, &Metadata::new())?;
     let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
     pending.write_table(WINDOWS_FILE, &rows, &Metadata::new())?;
-    Ok(warnings(&reports))
+    let mut warnings = warnings(&reports);
+    warnings.extend(jump_warning(&reports));
+    Ok(warnings)
 }
 
 fn check_equal_grids<'a>(
