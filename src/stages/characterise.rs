@@ -1,4 +1,9 @@
-//! characterise: roughness parameters, height-difference correlation, spectrum, self-affine fit.
+//! characterise: roughness parameters, height-difference correlation, spectrum, self-affine fit,
+//! parameters of the standards.
+
+mod standards;
+
+pub use standards::{DEPTH_FILE, DepthRow, PROFILE_FILE, ProfileRow, TEXTURE_FILE, TextureRow};
 
 use super::ingest::read_windows;
 use super::{Context, StageError, schema_of};
@@ -6,7 +11,9 @@ use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
 use crate::surface::correlation::{HeightDifferenceCorrelation, correlate_scans};
+use crate::surface::filter::ProfileFilter;
 use crate::surface::parameters::{AverageRoughness, RoughnessParameters};
+use crate::surface::profile::ProfileStandard;
 use crate::surface::self_affine::{ConfidenceInterval, LagRange, SelfAffineFit, fit_self_affine};
 use crate::surface::spectrum::{PowerSpectrum, Route, Window, power_spectra};
 use rayon::prelude::*;
@@ -14,7 +21,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Section `[characterise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +42,25 @@ pub struct Characterise {
     /// Longest lag of the self-affine fit in millimetres; that of the correlation if not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub self_affine_longest_lag_mm: Option<f64>,
+    /// Cut-off λs of the profile parameters in millimetres: shorter waves do not count. None by
+    /// default. Correlation and spectrum are those of the unfiltered windows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lambda_s_mm: Option<f64>,
+    /// Cut-off λc of the profile parameters in millimetres: longer waves are waviness. None by
+    /// default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lambda_c_mm: Option<f64>,
+    /// Filter of both cut-offs: `gaussian`, `gaussian_regression` or `robust_gaussian`.
+    pub profile_filter: ProfileFilter,
+    /// Section (sampling) length of the profile parameters in millimetres; λc if not set, a fifth
+    /// of the window without λc.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub section_length_mm: Option<f64>,
+    /// Which parameters are means over sections: `iso21920` or `iso4287`.
+    pub profile_standard: ProfileStandard,
+    /// Whether the mean profile depth uses the high-pass filter of 174.2 mm, for windows that are
+    /// long against it, in place of slope suppression in each segment.
+    pub profile_depth_high_pass: bool,
 }
 
 /// Window of the spectrum.
@@ -56,6 +82,12 @@ impl Default for Characterise {
             spectrum_window: SpectrumWindow::Hann,
             self_affine_shortest_lag_mm: None,
             self_affine_longest_lag_mm: None,
+            lambda_s_mm: None,
+            lambda_c_mm: None,
+            profile_filter: ProfileFilter::Gaussian,
+            section_length_mm: None,
+            profile_standard: ProfileStandard::Iso21920,
+            profile_depth_high_pass: false,
         }
     }
 }
@@ -71,6 +103,9 @@ impl Characterise {
             ("characterise.longest_lag_mm", self.longest_lag_mm),
             ("characterise.self_affine_shortest_lag_mm", self.self_affine_shortest_lag_mm),
             ("characterise.self_affine_longest_lag_mm", self.self_affine_longest_lag_mm),
+            ("characterise.lambda_s_mm", self.lambda_s_mm),
+            ("characterise.lambda_c_mm", self.lambda_c_mm),
+            ("characterise.section_length_mm", self.section_length_mm),
         ] {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
             demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
@@ -249,6 +284,9 @@ pub fn schemas() -> Vec<SchemaVersion> {
         schema_of::<CorrelationRow>(),
         schema_of::<SpectrumRow>(),
         schema_of::<SelfAffineRow>(),
+        schema_of::<ProfileRow>(),
+        schema_of::<DepthRow>(),
+        schema_of::<TextureRow>(),
     ]
 }
 
@@ -298,6 +336,13 @@ pub fn run(
         .flat_map(|(name, spectrum)| spectrum_rows(name, spectrum, bins))
         .collect();
     context.pending.write_table(SPECTRUM_FILE, &rows, &none)?;
+    context.check_interrupt()?;
+    let rows = standards::profile_rows(parameters, &windows);
+    context.pending.write_table(PROFILE_FILE, &rows, &none)?;
+    let rows = standards::depth_rows(parameters, &windows);
+    context.pending.write_table(DEPTH_FILE, &rows, &none)?;
+    let rows = standards::texture_rows(&names, &spectra, &mean_spectrum);
+    context.pending.write_table(TEXTURE_FILE, &rows, &none)?;
     let (rows, warnings) = self_affine(parameters, &names, &correlations)?;
     context.pending.write_table(SELF_AFFINE_FILE, &rows, &none)?;
     Ok(warnings)

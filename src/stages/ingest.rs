@@ -1,5 +1,9 @@
 //! ingest: from scan files to windows of equal spacing.
 
+mod faults;
+
+pub use faults::{FAULTS_FILE, FaultRow};
+
 use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
@@ -10,6 +14,7 @@ use crate::recipe::{Violation, demand};
 use crate::scans::file::{Grid, MapLines, parse_file};
 use crate::scans::{TextFormat, parse_text};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
+use faults::{fault_rows, jump_warning};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +22,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -134,7 +139,7 @@ impl Row for WindowRow {
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     let scans = SchemaVersion { schema: SCANS_SCHEMA.into(), version: SCANS_VERSION };
-    vec![scans, schema_of::<ScanReportRow>(), schema_of::<WindowRow>()]
+    vec![scans, schema_of::<ScanReportRow>(), schema_of::<FaultRow>(), schema_of::<WindowRow>()]
 }
 
 /// What [`SCANS_FILE`] holds.
@@ -282,9 +287,13 @@ pub fn run(
     pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, SCANS_DESCRIPTION, &datasets)?;
     let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
     pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
+    let rows: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
+    pending.write_table(FAULTS_FILE, &rows, &Metadata::new())?;
     let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
     pending.write_table(WINDOWS_FILE, &rows, &Metadata::new())?;
-    Ok(warnings(&reports))
+    let mut warnings = warnings(&reports);
+    warnings.extend(jump_warning(&reports));
+    Ok(warnings)
 }
 
 /// The line scans of a file: one, or the chosen lines of a height map.

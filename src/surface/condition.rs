@@ -1,12 +1,14 @@
 //! From a scan as measured to windows on equal spacing, without faults and form.
 
-use super::faults::{remove_out_of_range, remove_spikes};
+use super::faults::{FaultReport, RepeatedPositions};
 use super::form::{Form, FormError, LARGEST_ORDER, RemovedForm, remove_form};
 use super::resample::{Grid, GridError, block_means, place_on_grid, points_per_cell};
 use super::window::{window_name, windows};
 use super::{LineScan, RawScan};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+mod faults;
 
 /// How to condition a scan, in the order of the work: faults, resampling, windows, form.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -20,6 +22,22 @@ pub struct Conditioning {
     /// standard deviations is a spike and missing; 0 keeps all. Six by default: on road scans
     /// some 1e-4 of the points, on normal noise practically none.
     pub spike_threshold: f64,
+    /// Level jumps, walls or bridged drop-outs: `"keep"`, or `"missing"`, the points next to them.
+    /// They are counted either way.
+    pub level_jumps: Handling,
+    /// A step between neighbours beyond this many robust standard deviations of the steps around
+    /// it is a level jump; 0 looks for none.
+    pub jump_threshold: f64,
+    /// Points on either side of a level jump that become missing. Pairs of points up to twice this
+    /// apart then span no jump.
+    pub jump_margin_points: usize,
+    /// Runs at the ends that are no road: `"keep"` or `"cut"`. They are counted either way.
+    pub end_plates: EndPlates,
+    /// Interquartile ranges between the levels of the road and a plate; 0 looks for none.
+    pub end_plate_threshold: f64,
+    /// Points at the position of the one before: `"mean"`, take the mean of their heights, or
+    /// `"refuse"` the scan.
+    pub repeated_positions: RepeatedPositions,
     /// Lateral resolution of the instrument in micrometres, the width of its light spot. Not set:
     /// the spacing of the file is kept.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -42,6 +60,12 @@ impl Default for Conditioning {
         Self {
             valid_range_mm: None,
             spike_threshold: 6.0,
+            level_jumps: Handling::Keep,
+            jump_threshold: 10.0,
+            jump_margin_points: 1,
+            end_plates: EndPlates::Keep,
+            end_plate_threshold: 3.0,
+            repeated_positions: RepeatedPositions::Mean,
             lateral_resolution_um: None,
             samples_per_resolution: 2.0,
             window_length_mm: None,
@@ -50,6 +74,26 @@ impl Default for Conditioning {
             form_extent: FormExtent::Window,
         }
     }
+}
+
+/// What to do with points at a fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Handling {
+    /// Leave them.
+    Keep,
+    /// Make them missing.
+    Missing,
+}
+
+/// What to do with end plates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum EndPlates {
+    /// Leave them.
+    Keep,
+    /// Shorten the scan by them.
+    Cut,
 }
 
 /// What a form is fitted to.
@@ -95,6 +139,8 @@ pub struct ConditioningReport {
     pub cells_left_out: usize,
     /// The form removed from the scan as a whole, where the recipe asks for that.
     pub form: Option<RemovedForm>,
+    /// The faults that were looked for, in the order of the work.
+    pub faults: Vec<FaultReport>,
     /// All windows in the order of the track.
     pub windows: Vec<WindowReport>,
 }
@@ -156,6 +202,13 @@ impl Conditioning {
         }
         let threshold = self.spike_threshold;
         check("spike_threshold", threshold, threshold >= 0.0, "it must be 0 (off) or positive")?;
+        let threshold = self.jump_threshold;
+        check("jump_threshold", threshold, threshold >= 0.0, "it must be 0 (off) or positive")?;
+        let margin = self.jump_margin_points;
+        check("jump_margin_points", margin as f64, margin >= 1, "it must be 1 or more")?;
+        let threshold = self.end_plate_threshold;
+        let demand = "it must be 0 (off) or positive";
+        check("end_plate_threshold", threshold, threshold >= 0.0, demand)?;
         self.lateral_resolution_um.map_or(Ok(()), |um| positive("lateral_resolution_um", um))?;
         positive("samples_per_resolution", self.samples_per_resolution)?;
         self.window_length_mm.map_or(Ok(()), |mm| positive("window_length_mm", mm))?;
@@ -180,13 +233,10 @@ pub fn condition(
 ) -> Result<(Vec<LineScan>, ConditioningReport), ConditioningError> {
     conditioning.validate()?;
     let name = || scan.name.clone();
-    let (mut raw, fit) =
-        place_on_grid(scan).map_err(|source| ConditioningError::Grid { scan: name(), source })?;
-
-    let range = conditioning.valid_range_mm.map(|range| range.map(|mm| mm / 1e3));
-    let points_out_of_range = range.map_or(0, |range| remove_out_of_range(&mut raw.heights, range));
-    let threshold = conditioning.spike_threshold;
-    let spikes = if threshold > 0.0 { remove_spikes(&mut raw.heights, threshold) } else { 0 };
+    let (merged, mut found) = faults::sampling(scan, conditioning);
+    let (mut raw, fit) = place_on_grid(&merged)
+        .map_err(|source| ConditioningError::Grid { scan: name(), source })?;
+    let removed = faults::heights(&mut raw, conditioning, &mut found);
 
     let points = conditioning.lateral_resolution_um.map_or(1, |um| {
         points_per_cell(raw.spacing, um / 1e6 / conditioning.samples_per_resolution)
@@ -207,14 +257,15 @@ pub fn condition(
         points_sharing_a_cell: fit.points_sharing,
         raw_spacing_um: raw.spacing * 1e6,
         largest_deviation_um: fit.largest_deviation * 1e6,
-        points_out_of_range,
-        spikes,
+        points_out_of_range: removed.out_of_range,
+        spikes: removed.spikes,
         points_per_cell: points,
         spacing_um: grid.spacing * 1e6,
         cells: grid.heights.len(),
         cells_missing: count_missing(&grid.heights),
         cells_left_out: 0,
         form,
+        faults: found,
         windows: Vec::new(),
     };
     let kept = cut(&grid, conditioning, &mut report)?;

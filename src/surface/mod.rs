@@ -3,9 +3,11 @@
 pub mod condition;
 pub mod correlation;
 pub mod faults;
+pub mod filter;
 pub mod form;
 pub mod ladder;
 pub mod parameters;
+pub mod profile;
 pub mod realisation;
 pub mod resample;
 pub mod scan;
@@ -13,6 +15,7 @@ pub mod self_affine;
 pub mod sine_fit;
 pub mod spectrum;
 pub mod synthesis;
+pub mod texture;
 pub mod wave;
 pub mod window;
 

@@ -5,10 +5,13 @@ use asperity::artifact::RunView;
 use asperity::pipeline::Selection;
 use asperity::stages::Stage;
 use asperity::stages::characterise::{
-    AVERAGE, CORRELATION_FILE, CorrelationRow, PARAMETERS_FILE, ParametersRow, SPECTRUM_FILE,
-    SpectrumRow,
+    AVERAGE, CORRELATION_FILE, CorrelationRow, PARAMETERS_FILE, PROFILE_FILE, ParametersRow,
+    ProfileRow, SPECTRUM_FILE, SpectrumRow, TEXTURE_FILE, TextureRow,
 };
-use asperity::stages::ingest::{REPORT_FILE, ScanReportRow, WINDOWS_FILE, WindowRow, read_windows};
+use asperity::stages::ingest::{
+    FAULTS_FILE, FaultRow, REPORT_FILE, ScanReportRow, WINDOWS_FILE, WindowRow, read_windows,
+};
+use asperity::surface::{Conditioning, RawScan, condition};
 use std::f64::consts::{PI, TAU};
 
 const POINTS: usize = 400;
@@ -126,6 +129,63 @@ fn characterise_finds_correlation_and_spectrum_of_a_sine() {
     let bin = 10_f64.powf(0.1);
     let ratio = peak.wavenumber_rad_mm / (TAU / WAVELENGTH_MM);
     assert!((1.0 / bin..bin).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn characterise_finds_the_parameters_of_the_standards() {
+    let campaign = campaign(&[]);
+    let view = RunView::of(campaign.path("out"));
+    let (rows, _) = view.read_table::<ProfileRow>("characterise", PROFILE_FILE).unwrap();
+    let amplitude = AMPLITUDE_UM / 1e3;
+    assert_eq!((rows.len(), rows[0].sections), (1, 5));
+    approx::assert_relative_eq!(rows[0].rq_mm, amplitude / 2_f64.sqrt(), max_relative = 1e-9);
+    approx::assert_relative_eq!(rows[0].rsm_mm.unwrap(), WAVELENGTH_MM, max_relative = 1e-6);
+    let slope = 2_f64.sqrt() * PI * amplitude / WAVELENGTH_MM;
+    // The formula errs by (q dx)^6 / 140; six points of 400 have no slope.
+    approx::assert_relative_eq!(rows[0].rdq.unwrap(), slope, max_relative = 0.015);
+
+    let (rows, _) = view.read_table::<TextureRow>("characterise", TEXTURE_FILE).unwrap();
+    let bands: Vec<_> = rows.iter().filter(|row| row.scan == "wave").collect();
+    let sum: f64 = bands.iter().map(|row| row.mean_square_mm2).sum();
+    // Hann's window keeps a whole number of waves within a wavenumber to either side.
+    approx::assert_relative_eq!(sum, amplitude * amplitude / 2.0, max_relative = 1e-6);
+    let loudest = bands.iter().max_by(|a, b| a.level_db.total_cmp(&b.level_db)).unwrap();
+    approx::assert_relative_eq!(loudest.wavelength_mm, WAVELENGTH_MM, max_relative = 1e-12);
+}
+
+#[test]
+fn ingest_tells_of_every_fault() {
+    let campaign = campaign(&[]);
+    let view = RunView::of(campaign.path("out"));
+    let (rows, _) = view.read_table::<FaultRow>("ingest", FAULTS_FILE).unwrap();
+    let of = |name: &str| rows.iter().find(|row| row.fault == name).unwrap();
+    for fault in ["repeated positions", "end plates", "spikes", "level jumps"] {
+        assert_eq!(of(fault).count, 0, "{fault}");
+    }
+    approx::assert_relative_eq!(of("tilt").measure.unwrap(), 0.01, max_relative = 1e-6);
+    assert_eq!(of("level jumps").high_frequency_ratio, Some(1.0));
+}
+
+#[test]
+fn walls_are_kept_or_missing_as_the_recipe_says() {
+    let heights: Vec<f64> = (0..1000)
+        .map(|i| 1e-6 * (0.1 * f64::from(i)).sin() + if i < 500 { 0.0 } else { 20e-6 })
+        .collect();
+    let positions = (0..1000).map(|i| 1e-6 * f64::from(i)).collect();
+    let scan = RawScan { name: "road".into(), positions, heights };
+    let missing = |keys: &str| {
+        let conditioning: Conditioning = toml::from_str(keys).unwrap();
+        let (windows, report) = condition(&scan, &conditioning).unwrap();
+        let fault = report.faults.iter().find(|fault| fault.fault == "level jumps").unwrap();
+        assert_eq!((fault.count, fault.high_frequency_ratio.unwrap() < 0.01), (1, true));
+        windows[0].heights.iter().filter(|z| z.is_nan()).count()
+    };
+    assert_eq!(missing(""), 0);
+    assert_eq!(missing("level_jumps = 'missing'"), 2);
+    assert_eq!(missing("level_jumps = 'missing'\njump_margin_points = 4"), 8);
+    assert!(toml::from_str::<Conditioning>("level_jumps = 'split'").is_err());
+    let off: Conditioning = toml::from_str("jump_margin_points = 0").unwrap();
+    assert!(condition(&scan, &off).unwrap_err().to_string().starts_with("jump_margin_points"));
 }
 
 /// Encoders jitter, so the spacing fitted to the positions differs from scan to scan; lags of the

@@ -1,4 +1,17 @@
-//! Points an instrument got wrong, turned into missing ones.
+//! What an instrument got wrong: detectors with a stated criterion, and points turned into missing
+//! ones.
+
+mod effect;
+mod jumps;
+mod plates;
+mod sampling;
+
+pub use effect::{FaultReport, Texture};
+pub use jumps::{find_jumps, remove_jumps};
+pub use plates::end_plates;
+pub use sampling::{
+    Quantisation, RepeatedPositions, merge_repeated, position_jitter, quantisation,
+};
 
 use statrs::statistics::{Data, OrderStatistics};
 

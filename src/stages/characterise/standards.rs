@@ -1,0 +1,205 @@
+//! Parameters of the standards: profile parameters, mean profile depth, texture levels.
+
+use super::{AVERAGE, Characterise};
+use crate::artifact::Row;
+use crate::surface::filter::waviness;
+use crate::surface::profile::{ProfileParameters, profile_parameters};
+use crate::surface::texture::{mean_profile_depths, texture_bands};
+use crate::surface::{LineScan, PowerSpectrum};
+use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Profile parameters of each window: `profile_parameters.arrow`.
+pub const PROFILE_FILE: &str = "profile_parameters.arrow";
+/// Mean profile depths of the 100 mm segments: `profile_depth.arrow`.
+pub const DEPTH_FILE: &str = "profile_depth.arrow";
+/// Texture levels in third-octave bands, per window and averaged: `texture.arrow`.
+pub const TEXTURE_FILE: &str = "texture.arrow";
+
+/// Sections in a window where the recipe gives neither their length nor a cut-off, as in the
+/// default evaluation length of the standards.
+const SECTIONS: usize = 5;
+
+/// Profile parameters of one window after ISO 21920-2 or ISO 4287, of the roughness profile that
+/// `lambda_s_mm` and `lambda_c_mm` leave.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ProfileRow {
+    /// Name of the window.
+    pub scan: String,
+    /// Length of a section.
+    #[schemars(extend("unit" = "mm"))]
+    pub section_length_mm: f64,
+    /// Number of sections.
+    pub sections: u64,
+    /// Ra, mean absolute height.
+    #[schemars(extend("unit" = "mm"))]
+    pub ra_mm: f64,
+    /// Rq, root mean square height.
+    #[schemars(extend("unit" = "mm"))]
+    pub rq_mm: f64,
+    /// Rp, mean over the sections of the highest peak.
+    #[schemars(extend("unit" = "mm"))]
+    pub rp_mm: f64,
+    /// Rv, mean over the sections of the largest depth, positive.
+    #[schemars(extend("unit" = "mm"))]
+    pub rv_mm: f64,
+    /// Rz = Rp + Rv.
+    #[schemars(extend("unit" = "mm"))]
+    pub rz_mm: f64,
+    /// Rt, total height over all sections.
+    #[schemars(extend("unit" = "mm"))]
+    pub rt_mm: f64,
+    /// Rsk, skewness.
+    #[schemars(extend("unit" = "1"))]
+    pub rsk: f64,
+    /// Rku, kurtosis.
+    #[schemars(extend("unit" = "1"))]
+    pub rku: f64,
+    /// RSm, mean spacing of profile elements higher than a tenth of Rz on either side; absent
+    /// where there is no complete one.
+    #[schemars(extend("unit" = "mm"))]
+    pub rsm_mm: Option<f64>,
+    /// Rdq, root mean square slope by the seven-point formula; absent where gaps leave none.
+    #[schemars(extend("unit" = "1"))]
+    pub rdq: Option<f64>,
+}
+
+impl Row for ProfileRow {
+    const SCHEMA: &'static str = "asperity.characterise.profile_parameters";
+    const VERSION: u32 = 1;
+}
+
+/// Mean profile depth of one 100 mm segment after ISO 13473-1.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DepthRow {
+    /// Name of the window.
+    pub scan: String,
+    /// Start of the segment in the window.
+    #[schemars(extend("unit" = "mm"))]
+    pub start_mm: f64,
+    /// Share of interpolated points, drop-outs and spikes.
+    #[schemars(extend("unit" = "1"))]
+    pub interpolated_share: f64,
+    /// Mean profile depth; absent where more than a tenth of the points was interpolated.
+    #[schemars(extend("unit" = "mm"))]
+    pub depth_mm: Option<f64>,
+}
+
+impl Row for DepthRow {
+    const SCHEMA: &'static str = "asperity.characterise.profile_depth";
+    const VERSION: u32 = 1;
+}
+
+/// Texture level of one third-octave band after ISO 13473-4.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TextureRow {
+    /// Name of the window, or `average` over all windows.
+    pub scan: String,
+    /// Centre wavelength of the band.
+    #[schemars(extend("unit" = "mm"))]
+    pub wavelength_mm: f64,
+    /// Texture level `20 lg(root mean square height / 1e-6 m)`.
+    #[schemars(extend("unit" = "dB"))]
+    pub level_db: f64,
+    /// Mean square height of the band.
+    #[schemars(extend("unit" = "mm^2"))]
+    pub mean_square_mm2: f64,
+}
+
+impl Row for TextureRow {
+    const SCHEMA: &'static str = "asperity.characterise.texture";
+    const VERSION: u32 = 1;
+}
+
+/// Windows that are flat, or have sections without any height, have no row.
+pub(super) fn profile_rows(parameters: &Characterise, windows: &[LineScan]) -> Vec<ProfileRow> {
+    windows.par_iter().filter_map(|window| profile_row(parameters, window)).collect()
+}
+
+fn profile_row(parameters: &Characterise, window: &LineScan) -> Option<ProfileRow> {
+    let points = section_points(parameters, window);
+    let spacing = window.spacing;
+    let roughness = roughness(parameters, window);
+    let found = profile_parameters(&roughness, spacing, points, parameters.profile_standard)?;
+    let ProfileParameters { ra, rq, rp, rv, rz, rt, rsk, rku, rsm, rdq, sections } = found;
+    Some(ProfileRow {
+        scan: window.name.clone(),
+        section_length_mm: points as f64 * spacing * 1e3,
+        sections: sections as u64,
+        ra_mm: ra * 1e3,
+        rq_mm: rq * 1e3,
+        rp_mm: rp * 1e3,
+        rv_mm: rv * 1e3,
+        rz_mm: rz * 1e3,
+        rt_mm: rt * 1e3,
+        rsk,
+        rku,
+        rsm_mm: rsm.map(|metres| metres * 1e3),
+        rdq,
+    })
+}
+
+fn section_points(parameters: &Characterise, window: &LineScan) -> usize {
+    let points = window.heights.len();
+    match parameters.section_length_mm.or(parameters.lambda_c_mm) {
+        // Round-off must not cost a point; a section longer than the window is the window.
+        Some(mm) => ((mm / 1e3 / window.spacing * (1.0 + 1e-9)).floor() as usize).clamp(1, points),
+        None => (points / SECTIONS).max(1),
+    }
+}
+
+/// What the filters leave: waves longer than lambda_s, shorter than lambda_c.
+fn roughness(parameters: &Characterise, window: &LineScan) -> Vec<f64> {
+    let filtered = |heights: &[f64], mm: f64| {
+        waviness(heights, window.spacing, mm / 1e3, parameters.profile_filter)
+    };
+    let primary = match parameters.lambda_s_mm {
+        // The filters bridge gaps; what was missing stays missing.
+        Some(mm) => filtered(&window.heights, mm)
+            .into_iter()
+            .zip(&window.heights)
+            .map(|(line, z)| if z.is_nan() { f64::NAN } else { line })
+            .collect(),
+        None => window.heights.clone(),
+    };
+    match parameters.lambda_c_mm {
+        Some(mm) => filtered(&primary, mm).iter().zip(&primary).map(|(w, z)| z - w).collect(),
+        None => primary,
+    }
+}
+
+pub(super) fn depth_rows(parameters: &Characterise, windows: &[LineScan]) -> Vec<DepthRow> {
+    let rows = |window: &LineScan| -> Vec<DepthRow> {
+        let high_pass = parameters.profile_depth_high_pass;
+        let depths = mean_profile_depths(&window.heights, window.spacing, high_pass);
+        let row = |segment: crate::surface::texture::SegmentDepth| DepthRow {
+            scan: window.name.clone(),
+            start_mm: segment.start * 1e3,
+            interpolated_share: segment.interpolated,
+            depth_mm: segment.depth.filter(|depth| depth.is_finite()).map(|depth| depth * 1e3),
+        };
+        depths.into_iter().map(row).collect()
+    };
+    windows.par_iter().flat_map_iter(rows).collect()
+}
+
+/// Bands in which a spectrum of a gappy scan came out without power have no level and no row.
+pub(super) fn texture_rows(
+    names: &[&str],
+    spectra: &[PowerSpectrum],
+    mean: &PowerSpectrum,
+) -> Vec<TextureRow> {
+    let named = names.iter().copied().zip(spectra).chain([(AVERAGE, mean)]);
+    let rows = |(scan, spectrum): (&str, &PowerSpectrum)| -> Vec<TextureRow> {
+        let bands = texture_bands(spectrum).into_iter().filter(|band| band.mean_square > 0.0);
+        let row = |band: crate::surface::texture::TextureBand| TextureRow {
+            scan: scan.to_owned(),
+            wavelength_mm: band.wavelength * 1e3,
+            level_db: band.level(),
+            mean_square_mm2: band.mean_square * 1e6,
+        };
+        bands.map(row).collect()
+    };
+    named.flat_map(rows).collect()
+}

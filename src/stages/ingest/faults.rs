@@ -1,0 +1,84 @@
+//! The table of the faults of the scans.
+
+use crate::artifact::Row;
+use crate::surface::ConditioningReport;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What was found wrong in each scan and what it meant: `faults.arrow`.
+pub const FAULTS_FILE: &str = "faults.arrow";
+
+/// One kind of fault in one scan, at the spacing of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FaultRow {
+    /// Name of the scan.
+    pub scan: String,
+    /// Kind of fault.
+    pub fault: String,
+    /// Criterion of its detector, with the key that holds its number.
+    pub criterion: String,
+    /// What was done: kept, missing, cut, averaged, refused, reported.
+    pub decision: String,
+    /// How often it was found.
+    pub count: u64,
+    /// Share of the points that it concerns.
+    #[schemars(extend("unit" = "1"))]
+    pub share: f64,
+    /// What was measured besides, named in `measure_name`.
+    #[schemars(extend("unit" = "see measure_name"))]
+    pub measure: Option<f64>,
+    /// Name and unit of the measure.
+    pub measure_name: Option<String>,
+    /// Root mean square slope before the fault is removed.
+    #[schemars(extend("unit" = "1"))]
+    pub rms_slope_before: Option<f64>,
+    /// And after, also where it was decided to keep the fault.
+    #[schemars(extend("unit" = "1"))]
+    pub rms_slope_after: Option<f64>,
+    /// Mean square of second differences, after over before: the ratio of the power spectral
+    /// density weighted by 16 sin^4(q dx / 2), that is at the highest wavenumbers.
+    #[schemars(extend("unit" = "1"))]
+    pub high_frequency_ratio: Option<f64>,
+}
+
+impl Row for FaultRow {
+    const SCHEMA: &'static str = "asperity.ingest.faults";
+    const VERSION: u32 = 1;
+}
+
+pub(super) fn fault_rows(report: &ConditioningReport) -> Vec<FaultRow> {
+    let row = |fault: &crate::surface::faults::FaultReport| FaultRow {
+        scan: report.scan.clone(),
+        fault: fault.fault.clone(),
+        criterion: fault.criterion.clone(),
+        decision: fault.decision.clone(),
+        count: fault.count as u64,
+        share: fault.share,
+        measure: fault.measure,
+        measure_name: fault.measure_name.clone(),
+        rms_slope_before: fault.rms_slope_before,
+        rms_slope_after: fault.rms_slope_after,
+        high_frequency_ratio: fault.high_frequency_ratio,
+    };
+    report.faults.iter().map(row).collect()
+}
+
+/// Says so where level jumps that were kept make most of the shortest waves of a scan.
+pub(super) fn jump_warning(reports: &[&ConditioningReport]) -> Option<String> {
+    let decided_by_jumps = |report: &&&ConditioningReport| {
+        report.faults.iter().any(|fault| {
+            fault.fault == "level jumps"
+                && fault.decision == "kept"
+                && fault.high_frequency_ratio.is_some_and(|ratio| ratio < 0.5)
+        })
+    };
+    let concerned: Vec<_> = reports.iter().filter(decided_by_jumps).collect();
+    let first = concerned.first()?;
+    Some(format!(
+        "level jumps make more than half of the shortest waves of {} of {} scans, the first {}; \
+         look at ingest/faults.arrow, consider ingest.conditioning.level_jumps = \"missing\"",
+        concerned.len(),
+        reports.len(),
+        first.scan
+    ))
+}
