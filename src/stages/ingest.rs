@@ -299,7 +299,7 @@ pub fn run(
 /// The line scans of a file: one, or the chosen lines of a height map.
 fn read_scans(ingest: &Ingest, file: &ScanFile, bytes: &[u8]) -> Result<Vec<RawScan>, StageError> {
     let name = file.path.display().to_string();
-    if let Some(scan) = parse_file(&name, bytes)? {
+    if let Some(scan) = parse_file(&name, bytes).map_err(Box::new)? {
         let lines = match (scan.grid, ingest.map_lines) {
             (_, Some(lines)) => lines,
             (Grid::Profile { .. }, None) => MapLines::Rows,

@@ -133,7 +133,7 @@ pub enum StageError {
     Scan(#[from] crate::scans::ScanError),
     /// An instrument file.
     #[error(transparent)]
-    File(#[from] crate::scans::FileError),
+    File(#[from] Box<crate::scans::FileError>),
     /// A height map without a word on how to take line scans from it.
     #[error("{} is a height map of {rows} rows of {columns} points: set ingest.map_lines to \"rows\" or \"columns\"", path.display())]
     MapLines {
