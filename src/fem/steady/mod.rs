@@ -88,6 +88,8 @@ pub const COLUMNS_RANGE: RangeInclusive<usize> = 8..=1 << 16;
 /// Block heights, in periods, for which a contact can be asked.
 pub const HEIGHT_RANGE: RangeInclusive<f64> = 0.1..=10.0;
 
+/// Points of a path that ended whose contact is closed, from the last one back, before it is given up.
+const MOST_CLOSED: usize = 8;
 /// Columns of the coarsest mesh on the shortest wave of the profile.
 const COARSEST_PER_WAVE: f64 = 24.0;
 /// Pressure of the first contact over the modulus at the shortest wave.
@@ -276,12 +278,13 @@ fn read(
 
 /// The exact solution at the highest point of a path at which it converges.
 fn last_converged(path: &mut Path, scene: &Scene, speed: f64) -> Option<SteadySolution> {
-    loop {
+    for _ in 0..MOST_CLOSED {
         if let Ok(solution) = conclude(path, scene, speed) {
             return Some(solution);
         }
         path.step_back()?;
     }
+    None
 }
 
 fn check_speed(speed: f64) -> Result<(), FemError> {

@@ -69,6 +69,8 @@ const LOWER_BARRIER: f64 = 0.3;
 const FIRST_STEP: f64 = 1.6;
 const LARGEST_STEP: f64 = 2.5;
 const SMALLEST_STEP: f64 = 1.02;
+/// Pressures passed on the way to one after which a path that creeps is given up.
+const MOST_PRESSURES: usize = 40;
 /// A finer mesh that cannot be entered at a pressure is tried again at this share of it.
 const NEXT_ENTRY: f64 = 0.7;
 /// Shear of the elements beyond which rows are shifted anew.
@@ -80,6 +82,8 @@ const LEAST_SHEAR: f64 = 0.05;
 const MOST_FINAL_SHEAR: f64 = 0.1;
 /// Change of the shear of the elements below which a shift is given up.
 const SMALLEST_SHIFT: f64 = 0.01;
+/// Shifts after which rows that will not stand upright are left as they are.
+const MOST_SHIFTS: usize = 30;
 /// After a shift that took no more Newton steps than this the next one may be longer, by this ratio.
 const EASY_SHIFT: usize = 3;
 const LONGER_SHIFT: f64 = 1.5;
@@ -131,7 +135,11 @@ impl Path {
 
     /// Goes on to the wanted pressure.
     pub fn advance_to(&mut self, wanted: f64) -> Result<(), Stuck> {
+        let mut steps_taken = 0;
         while self.pressure != wanted {
+            if steps_taken == MOST_PRESSURES {
+                return Err(Stuck);
+            }
             let next = if wanted > self.pressure {
                 wanted.min(self.step * self.pressure)
             } else {
@@ -142,6 +150,7 @@ impl Path {
             self.stand_upright(MOST_SHEAR);
             match self.converge(next, BARRIER, ON_THE_WAY) {
                 Ok(()) => {
+                    steps_taken += 1;
                     self.pressure = next;
                     self.pass();
                     let steps = self.cost.newton_steps - before.newton_steps;
@@ -350,7 +359,10 @@ impl Path {
             return;
         }
         let mut longest = f64::INFINITY;
-        while self.slant().abs() > LEAST_SHEAR && longest > SMALLEST_SHIFT {
+        for _ in 0..MOST_SHIFTS {
+            if self.slant().abs() <= LEAST_SHEAR || longest <= SMALLEST_SHIFT {
+                return;
+            }
             let mesh = self.level.block.mesh().clone();
             let shift = -self.slant().clamp(-longest, longest);
             let shifted = Mesh { skew: mesh.skew + shift, ..mesh.clone() };
