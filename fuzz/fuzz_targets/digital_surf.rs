@@ -4,7 +4,8 @@
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
+    asperity_fuzz::read(bytes);
     for signature in [b"DIGITAL SURF", b"DSCOMPRESSED"] {
-        let _ = asperity::scans::file::parse_file("fuzz", &[signature.as_slice(), bytes].concat());
+        asperity_fuzz::read_with(signature, bytes);
     }
 });

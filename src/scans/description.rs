@@ -232,7 +232,8 @@ fn yes() -> bool {
     true
 }
 
-fn default_missing() -> Vec<String> {
+/// The marks of a missing height that need not be listed.
+pub(super) fn default_missing() -> Vec<String> {
     ["", "NaN", "BAD"].map(String::from).to_vec()
 }
 

@@ -4,17 +4,17 @@
 //! where the file states them. Nothing is read by this: it is a proposal for the recipe.
 
 mod encoding;
+mod missing;
 #[cfg(test)]
 mod tests;
 
-use crate::scans::description::{DecimalMark, LengthUnit, Separator};
+use crate::scans::TextFormat;
+use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator, default_missing};
 use csv::ReaderBuilder;
 use std::fmt::Write;
 
-/// Lines that are looked at; more say nothing new.
+/// Lines by which separator, decimal mark and columns are found; more say nothing new.
 const MOST_LINES: usize = 2000;
-/// Words that stand for a missing height.
-const MISSING_WORDS: [&str; 8] = ["", "nan", "bad", "na", "n/a", "null", "---", "*"];
 
 /// What a text file looks like.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,8 +35,11 @@ pub struct TextShape {
     pub header: bool,
     /// The columns.
     pub columns: Vec<TextColumn>,
-    /// Lines of points, as far as was looked.
+    /// Lines of points.
     pub rows: usize,
+    /// Cells that seem to mark a missing height, beyond those that do without being listed: words,
+    /// and numbers that repeat at the end of the range and far from all other heights.
+    pub missing: Vec<String>,
     /// Lines before the points that state a unit, as they stand.
     pub stated: Vec<String>,
 }
@@ -56,7 +59,8 @@ impl TextShape {
     /// Looks at the bytes of a file; `None` where no two lines of numbers follow each other.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         let (encoding, text) = encoding::decode(bytes);
-        let lines: Vec<&str> = text.lines().take(MOST_LINES).collect();
+        let lines: Vec<&str> = text.lines().collect();
+        let start = &lines[..lines.len().min(MOST_LINES)];
         const SEPARATORS: [Separator; 4] =
             [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Whitespace];
         let layouts = SEPARATORS.iter().flat_map(|separator| {
@@ -64,11 +68,50 @@ impl TextShape {
                 .map(|mark| Layout { separator: *separator, mark })
         });
         // The first of equals: more lines of points, then more columns.
-        let (layout, body) = layouts
+        let (layout, mut body) = layouts
             .filter(|layout| layout.is_possible())
-            .filter_map(|layout| Some((layout, layout.body(&lines)?)))
+            .filter_map(|layout| Some((layout, layout.body(start)?)))
             .rev_max_by_key(|(_, body)| (body.rows.len(), body.rows[0].len()))?;
+        layout.extend(&mut body, &lines);
         Some(describe(encoding, layout, &body, &lines))
+    }
+
+    /// The proposed description.
+    ///
+    /// # Errors
+    /// The keys that the file does not state a value of.
+    pub fn format(&self) -> Result<TextFormat, Vec<&'static str>> {
+        let (x, z) = self.proposed_columns();
+        let unit = |number: usize| self.columns[number].unit;
+        let unstated: Vec<&str> = [
+            ("x_spacing_um", x.is_none()),
+            ("x_unit", x.is_some_and(|x| unit(x).is_none())),
+            ("z_unit", unit(z).is_none()),
+        ]
+        .into_iter()
+        .filter_map(|(key, absent)| absent.then_some(key))
+        .collect();
+        if !unstated.is_empty() {
+            return Err(unstated);
+        }
+        Ok(TextFormat {
+            separator: self.separator,
+            decimal_mark: self.decimal_mark,
+            comment: self.comment,
+            skip_lines: if self.skip_until.is_some() { 0 } else { self.skip_lines },
+            skip_until: self.skip_until.clone(),
+            header: self.header,
+            x_column: x.map(|x| self.column(x)),
+            x_spacing_um: None,
+            x_unit: x.and_then(unit),
+            z_column: self.column(z),
+            z_unit: unit(z),
+            invert_z: false,
+            missing: default_missing().into_iter().chain(self.missing.clone()).collect(),
+            encoding: self.encoding.into(),
+            cut_start_mm: 0.0,
+            cut_end_mm: 0.0,
+        })
     }
 
     /// The section `[ingest.text]` of a recipe that would read the file; what the file does not
@@ -106,6 +149,11 @@ impl TextShape {
         }
         line(format!("z_column = {}", self.column_text(z)));
         line(unit_text("z_unit", self.columns[z].unit));
+        if !self.missing.is_empty() {
+            let marks = default_missing().into_iter().chain(self.missing.clone());
+            let marks: Vec<String> = marks.map(|mark| quoted(&mark)).collect();
+            line(format!("missing = [{}]", marks.join(", ")));
+        }
         if self.encoding != "utf-8" {
             line(format!("encoding = \"{}\"", self.encoding));
         }
@@ -129,13 +177,21 @@ impl TextShape {
         (x, z.unwrap_or(if x == Some(last) { 0 } else { last }))
     }
 
-    fn column_text(&self, number: usize) -> String {
+    /// A column by its name, by its number where that tells it better.
+    fn column(&self, number: usize) -> Column {
         let name = &self.columns[number].name;
         let unique = self.columns.iter().filter(|column| column.name == *name).count() == 1;
         if self.header && unique && !name.is_empty() {
-            quoted(name)
+            Column::Name(name.clone())
         } else {
-            (number + 1).to_string()
+            Column::Number(number + 1)
+        }
+    }
+
+    fn column_text(&self, number: usize) -> String {
+        match self.column(number) {
+            Column::Name(name) => quoted(&name),
+            Column::Number(number) => number.to_string(),
         }
     }
 }
@@ -190,6 +246,9 @@ impl Layout {
         let Some(separator) = self.separator.character() else {
             return line.split_whitespace().map(str::to_owned).collect();
         };
+        if !line.contains('"') {
+            return line.split(separator).map(|cell| cell.trim().to_owned()).collect();
+        }
         let mut reader = ReaderBuilder::new()
             .delimiter(separator as u8)
             .has_headers(false)
@@ -202,11 +261,14 @@ impl Layout {
         let cells = self.cells(line);
         let numbers: Vec<f64> =
             cells.iter().map(|cell| self.number(cell)).collect::<Option<_>>()?;
-        numbers.iter().any(|number| number.is_finite()).then_some(numbers)
+        // A line of heights only may hold a word for a missing one; elsewhere words are names.
+        let is_point = numbers.iter().any(|number| number.is_finite())
+            || (cells.len() == 1 && !cells[0].is_empty());
+        is_point.then_some(numbers)
     }
 
     fn number(self, cell: &str) -> Option<f64> {
-        if MISSING_WORDS.contains(&cell.to_lowercase().as_str()) {
+        if missing::is_word(cell) {
             return Some(f64::NAN);
         }
         let point = match self.mark {
@@ -215,6 +277,14 @@ impl Layout {
             DecimalMark::Comma => cell.replacen(',', ".", 1),
         };
         point.parse().ok().filter(|number: &f64| number.is_finite())
+    }
+
+    /// Goes on with the points where the first lines end.
+    fn extend(self, body: &mut Body, lines: &[&str]) {
+        let width = body.rows[0].len();
+        let next = body.start + body.rows.len();
+        let further = lines.iter().skip(next).map_while(|line| self.numbers(line));
+        body.rows.extend(further.take_while(|row| row.len() == width));
     }
 
     /// The longest run of lines of equally many numbers.
@@ -226,12 +296,12 @@ impl Layout {
                 Some(row) if current.rows.first().is_some_and(|first| first.len() == row.len()) => {
                     current.rows.push(row);
                 }
-                Some(row) => {
+                Some(row) if row.iter().any(|number| number.is_finite()) => {
                     let before =
                         std::mem::replace(&mut current, Body { start: index, rows: vec![row] });
                     longest = longer(longest, before);
                 }
-                None => {
+                _ => {
                     let none = Body { start: index, rows: Vec::new() };
                     longest = longer(longest, std::mem::replace(&mut current, none));
                 }
@@ -278,7 +348,7 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
             name,
         }
     };
-    TextShape {
+    let shape = TextShape {
         encoding,
         separator: layout.separator,
         decimal_mark: layout.mark,
@@ -293,7 +363,15 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
             .filter(|line| states_unit(line))
             .map(|l| l.trim().to_owned())
             .collect(),
-    }
+        missing: Vec::new(),
+    };
+    let (_, z) = shape.proposed_columns();
+    let numbers: Vec<f64> = body.rows.iter().map(|row| row[z]).collect();
+    let points = &lines[body.start..body.start + body.rows.len()];
+    let mut missing =
+        missing::words(points.iter().filter_map(|line| layout.cells(line).into_iter().nth(z)));
+    missing.extend(missing::numbers(&numbers).into_iter().map(|mark| mark.to_string()));
+    TextShape { missing, ..shape }
 }
 
 fn comment_of(preamble: &[&str]) -> Option<char> {

@@ -141,8 +141,14 @@ impl ScanOptions {
 #[derive(Debug, Serialize)]
 pub(super) struct Scan {
     path: PathBuf,
-    points: usize,
-    missing: usize,
+    format: &'static str,
+    pub(super) points: usize,
+    pub(super) missing: usize,
+    /// Median distance of neighbouring points.
+    pub(super) spacing_m: f64,
+    pub(super) mean_m: f64,
+    /// Of the population of valid points.
+    pub(super) std_m: f64,
     start_mm: f64,
     end_mm: f64,
     median_spacing_um: f64,
@@ -159,7 +165,7 @@ pub(super) struct Scan {
 
 impl Scan {
     /// The readers give two points or more and at least one height.
-    fn of(path: &Path, scan: RawScan) -> Self {
+    pub(super) fn of(path: &Path, scan: RawScan) -> Self {
         let RawScan { positions, heights, .. } = scan;
         let steps: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]) * 1e6).collect();
         let present: Vec<f64> =
@@ -167,22 +173,29 @@ impl Scan {
         let mean =
             |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / present.len() as f64;
         let mean_um = mean(&mut present.iter().copied());
+        let rms_um = mean(&mut present.iter().map(|z| (z - mean_um).powi(2))).sqrt();
         let lowest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
         let highest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (smallest_spacing_um, largest_spacing_um) = (lowest(&steps), highest(&steps));
+        let median_spacing_um = Data::new(steps).median();
         let point = |(x, z): (&f64, &f64)| (x * 1e3, (!z.is_nan()).then_some(z * 1e6));
         Self {
             path: path.to_path_buf(),
+            format: "text",
             points: heights.len(),
             missing: heights.len() - present.len(),
             start_mm: lowest(&positions) * 1e3,
             end_mm: highest(&positions) * 1e3,
-            smallest_spacing_um: lowest(&steps),
-            largest_spacing_um: highest(&steps),
-            median_spacing_um: Data::new(steps).median(),
+            smallest_spacing_um,
+            largest_spacing_um,
+            median_spacing_um,
+            spacing_m: median_spacing_um / 1e6,
+            mean_m: mean_um / 1e6,
+            std_m: rms_um / 1e6,
             lowest_um: lowest(&present),
             highest_um: highest(&present),
             mean_um,
-            rms_um: mean(&mut present.iter().map(|z| (z - mean_um).powi(2))).sqrt(),
+            rms_um,
             first_points: positions.iter().zip(&heights).take(FIRST_POINTS).map(point).collect(),
         }
     }

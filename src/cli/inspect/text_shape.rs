@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::foreign;
+use super::scan::Scan;
 use crate::cli::CliError;
-use crate::cli::output::aligned;
+use crate::cli::output::{aligned, significant};
 use crate::scans::description::{DecimalMark, LengthUnit, Separator};
+use crate::scans::parse_text;
 use crate::scans::text_shape::{self, separator_text};
 
 /// What a text looks like.
@@ -24,12 +26,30 @@ pub(super) struct TextShape {
     skip_until: Option<String>,
     header: bool,
     columns: Vec<Column>,
-    /// Lines of points among the first 2000.
-    rows: usize,
+    points: usize,
+    /// What the proposed description reads; absent where it cannot.
+    #[serde(flatten)]
+    read: Option<Statistics>,
+    /// Why it cannot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unread: Option<String>,
+    /// Cells proposed as marks of missing heights.
+    missing_marks: Vec<String>,
     /// Lines before the points that state a unit.
     stated: Vec<String>,
     /// The section of a recipe that would read it.
     recipe_section: String,
+}
+
+/// Numbers under the proposed description, to be checked before they are believed.
+#[derive(Debug, Serialize)]
+struct Statistics {
+    missing: usize,
+    /// Median distance of neighbouring points.
+    spacing_m: f64,
+    mean_m: f64,
+    /// Of the population of valid points.
+    std_m: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -48,6 +68,10 @@ impl TextShape {
         let shape = text_shape::TextShape::of(&bytes)
             .ok_or_else(|| foreign(path, "is text without lines of numbers: no scan"))?;
         let recipe_section = shape.recipe_section();
+        let (read, unread) = match statistics(path, &bytes, &shape) {
+            Ok(statistics) => (Some(statistics), None),
+            Err(reason) => (None, Some(reason)),
+        };
         let column = |column: text_shape::TextColumn| Column {
             name: column.name,
             unit: column.unit,
@@ -64,7 +88,10 @@ impl TextShape {
             skip_until: shape.skip_until,
             header: shape.header,
             columns: shape.columns.into_iter().map(column).collect(),
-            rows: shape.rows,
+            points: shape.rows,
+            read,
+            unread,
+            missing_marks: shape.missing,
             stated: shape.stated,
             recipe_section,
         })
@@ -88,6 +115,17 @@ impl TextShape {
             Some(marker) => format!("{} lines, the last is `{marker}`", self.skip_lines),
             None => format!("{} lines to skip", self.skip_lines),
         };
+        let um = |metres: f64| significant(metres * 1e6) + " um";
+        let numbers = match (&self.read, &self.unread) {
+            (Some(read), _) => format!(
+                "{} missing, spacing {}, mean of z {}, rms of z {} about the mean",
+                read.missing,
+                um(read.spacing_m),
+                um(read.mean_m),
+                um(read.std_m)
+            ),
+            (None, reason) => reason.clone().unwrap_or_default(),
+        };
         let lines = aligned(&[
             ("file", self.path.display().to_string()),
             ("format", "text; nothing is read of it without a description".into()),
@@ -97,9 +135,33 @@ impl TextShape {
             ("before the columns", before),
             ("column names", if self.header { "yes" } else { "no" }.into()),
             ("columns", columns.join("\n")),
-            ("lines of points", format!("{} (of the first 2000 lines)", self.rows)),
+            ("lines of points", self.points.to_string()),
+            (
+                "missing marks",
+                self.missing_marks
+                    .iter()
+                    .map(|mark| format!("`{mark}`?"))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            ),
             ("stated units", self.stated.join("\n")),
+            ("with the description below", numbers),
         ]);
         format!("{lines}\na description for the recipe, to be checked:\n\n{}", self.recipe_section)
     }
+}
+
+/// What the proposed description reads of the file, or why it does not.
+fn statistics(
+    path: &Path,
+    bytes: &[u8],
+    shape: &text_shape::TextShape,
+) -> Result<Statistics, String> {
+    let format = shape.format().map_err(|keys| {
+        format!("not read: the file does not state {}; units are never guessed", keys.join(", "))
+    })?;
+    let name = path.display().to_string();
+    let scan = parse_text(&name, bytes, &format).map_err(|error| error.to_string())?;
+    let Scan { missing, spacing_m, mean_m, std_m, .. } = Scan::of(path, scan);
+    Ok(Statistics { missing, spacing_m, mean_m, std_m })
 }

@@ -6,7 +6,7 @@
 
 use super::bytes::{Cursor, Number, count};
 use super::error::{FileProblem, Place, unexpected};
-use super::{ScanFile, grid};
+use super::{ScanFile, grid, spacing};
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
@@ -107,10 +107,10 @@ fn read_header(bytes: &[u8]) -> Result<Header, FileProblem> {
     let special = at(offset::SPECIAL_POINTS).i16("special points")? != 0;
     let smallest = f64::from(at(offset::SMALLEST).i32("smallest height")?);
     let metres = [unit(bytes, 0)?, unit(bytes, 1)?, unit(bytes, 2)?];
-    let mut spacings = at(offset::SPACINGS);
+    let mut fields = at(offset::SPACINGS);
     let mut steps = [0.0; 3];
     for (step, metres) in steps.iter_mut().zip(metres) {
-        *step = f64::from(spacings.f32("spacing")?) * metres.unwrap_or(1.0);
+        *step = f64::from(fields.f32("spacing")?) * metres.unwrap_or(1.0);
     }
     if let [None, ..] | [.., None] = metres {
         let place = Place::Byte(offset::STEP_UNITS);
@@ -119,6 +119,10 @@ fn read_header(bytes: &[u8]) -> Result<Header, FileProblem> {
     if rows > 1 && metres[1].is_none() {
         let place = Place::Byte(offset::STEP_UNITS + 16);
         return Err(unexpected(place, "the unit of y", "not a length", "nm, um, mm, cm or m"));
+    }
+    spacing(Place::Byte(offset::SPACINGS), steps[0])?;
+    if rows > 1 {
+        spacing(Place::Byte(offset::SPACINGS + 4), steps[1])?;
     }
     let offset_z = f64::from(at(offset::OFFSET_Z).f32("offset of z")?) * metres[2].unwrap_or(1.0);
     let mut lengths = at(offset::COMMENT_LENGTH);

@@ -7,7 +7,7 @@
 
 use super::bytes::count;
 use super::error::{FileProblem, Place, unexpected};
-use super::{Grid, ScanFile, metres_of};
+use super::{Grid, ScanFile, metres_of, spacing};
 
 /// Reads an ERD file; its first channel of a length is the profile.
 pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
@@ -20,15 +20,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
         })?;
     let keywords = Keywords { lines: lines.get(2..end).unwrap_or_default() };
     let (place, x_unit) = keywords.find("XUNITS").unwrap_or((2, String::new()));
-    let spacing = layout.step
-        * metres_of(&x_unit).ok_or_else(|| {
-            unexpected(
-                Place::Line(place),
-                "the unit of x (XUNITS)",
-                &x_unit,
-                "a length, such as m or ft",
-            )
-        })?;
+    let x_metres = metres_of(&x_unit).ok_or_else(|| {
+        let expected = "a length, such as m or ft";
+        unexpected(Place::Line(place), "the unit of x (XUNITS)", &x_unit, expected)
+    })?;
+    let spacing = spacing(Place::Line(2), layout.step * x_metres)?;
     let (place, units) = keywords.find("UNITSNAM").unwrap_or((2, String::new()));
     let channel = |number| columns_of_eight(&units, number);
     let (profile, metres) = (0..layout.channels)

@@ -32,6 +32,8 @@ pub enum Place {
     Element(String),
     /// Member of an archive.
     Member(String),
+    /// Number of a height in the order of the file, counted from 1.
+    Height(usize),
 }
 
 impl fmt::Display for Place {
@@ -41,6 +43,7 @@ impl fmt::Display for Place {
             Self::Line(line) => write!(out, "line {line}"),
             Self::Element(path) => write!(out, "element {path}"),
             Self::Member(name) => write!(out, "archive member {name}"),
+            Self::Height(number) => write!(out, "height {number}"),
         }
     }
 }
@@ -121,7 +124,7 @@ pub enum FileProblem {
         reason: String,
     },
     /// All points are marked as missing.
-    #[error("all {points} heights are missing")]
+    #[error("all {points} heights are missing; there is nothing to read, export the scan again")]
     AllMissing {
         /// Number of points.
         points: usize,

@@ -6,6 +6,7 @@
 //! | X3P | zip archive of XML and binary data | ISO 25178-72, ISO 5436-2 |
 //! | Digital Surf | `.sur` and `.pro`, compressed or not | manual of the software |
 //! | ERD | longitudinal road profile, text | ERD file specification, UMTRI |
+//! | Gwyddion text | height map as text with its size and unit | manual of the software |
 //!
 //! The format is told by the content; the name of the file does not matter. Every size that a
 //! file declares is compared with what the file holds before memory is asked for.
@@ -14,6 +15,7 @@ mod bytes;
 mod digital_surf;
 mod erd;
 pub mod error;
+mod gwyddion;
 mod sdf;
 #[cfg(test)]
 mod tests;
@@ -40,6 +42,8 @@ pub enum Family {
     DigitalSurf,
     /// Road profile of the Engineering Research Division.
     Erd,
+    /// Image as text from Gwyddion.
+    Gwyddion,
 }
 
 impl Family {
@@ -54,6 +58,8 @@ impl Family {
             Some(Self::DigitalSurf)
         } else if text.get(..10).is_some_and(|magic| magic.eq_ignore_ascii_case(b"ERDFILEV2.")) {
             Some(Self::Erd)
+        } else if gwyddion::is_header(text) {
+            Some(Self::Gwyddion)
         } else {
             None
         }
@@ -167,26 +173,29 @@ impl ScanFile {
 
     /// Checks what all formats have in common.
     fn checked(self) -> Result<Self, FileProblem> {
-        let spacings = match self.grid {
-            Grid::Profile { spacing } => [spacing, spacing],
-            Grid::Map { spacing_x, spacing_y, .. } => [spacing_x, spacing_y],
-        };
-        // From an atomic force microscope to a survey of longitudinal evenness.
-        const SPACINGS_M: std::ops::RangeInclusive<f64> = 1e-12..=10.0;
-        if let Some(spacing) = spacings.into_iter().find(|spacing| !SPACINGS_M.contains(spacing)) {
-            let place = Place::Byte(0);
-            let expected = "between 1e-12 m and 10 m";
-            return Err(unexpected(place, "the spacing of the points in m", spacing, expected));
-        }
-        if self.heights.iter().any(|height| height.is_infinite()) {
-            let expected = "finite numbers or marks of missing points";
-            return Err(unexpected(Place::Byte(0), "a height", "infinite", expected));
+        // Absolute elevations of roads are heights as well; all beyond is a mark or a wrong unit.
+        const LARGEST_HEIGHT_M: f64 = 1e4;
+        let absurd = |height: &f64| height.abs() > LARGEST_HEIGHT_M;
+        if let Some(index) = self.heights.iter().position(absurd) {
+            let found = format!("{:e} m", self.heights[index]);
+            let expected = "a height below 10 km or a mark of missing points of the format";
+            return Err(unexpected(Place::Height(index + 1), "the value", found, expected));
         }
         match self.heights.len() {
             points if points == self.missing() => Err(FileProblem::AllMissing { points }),
             _ => Ok(self),
         }
     }
+}
+
+/// A spacing in metres, if it is one of a scan: from an atomic force microscope to a survey of
+/// longitudinal evenness.
+fn spacing(place: Place, metres: f64) -> Result<f64, FileProblem> {
+    if (1e-12..=10.0).contains(&metres) {
+        return Ok(metres);
+    }
+    let expected = "between 1e-12 m and 10 m; check spacing and unit in the instrument's software";
+    Err(unexpected(place, "the spacing of the points in m", format!("{metres:e}"), expected))
 }
 
 /// Reads an instrument file; `None` if it is of none of the families.
@@ -210,6 +219,7 @@ pub fn parse_file(name: &str, bytes: &[u8]) -> Result<Option<ScanFile>, FileErro
         Family::X3p => x3p::read(bytes),
         Family::DigitalSurf => digital_surf::read(bytes),
         Family::Erd => erd::read(bytes),
+        Family::Gwyddion => gwyddion::read(bytes),
     };
     read.and_then(ScanFile::checked)
         .map(Some)

@@ -6,7 +6,7 @@
 
 use super::bytes::{Cursor, Number, count};
 use super::error::{FileProblem, Place, unexpected};
-use super::{ScanFile, grid};
+use super::{ScanFile, grid, spacing};
 
 /// Dialect and encoding, the first eight bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +67,6 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
             version.name,
             if version.text { "text" } else { "binary" }
         ),
-        // A profile often states 0 as distance of its neighbours.
         grid: grid(columns, rows, x, y),
         heights,
         instrument,
@@ -93,6 +92,15 @@ fn refuse_codes(compression: u64, check: u64, place: &Place) -> Result<(), FileP
     Err(FileProblem::Unsupported { place: place.clone(), what, advice })
 }
 
+/// A profile often states 0 as the distance to a next one.
+fn check_spacings(scales: &[f64; 3], rows: usize, [x, y]: [Place; 2]) -> Result<(), FileProblem> {
+    spacing(x, scales[0])?;
+    if rows > 1 {
+        spacing(y, scales[1])?;
+    }
+    Ok(())
+}
+
 fn read_binary(bytes: &[u8], version: Version) -> Result<(Header, Vec<f64>), FileProblem> {
     let mut cursor = Cursor::at(bytes, 8);
     let instrument = vec![
@@ -107,7 +115,9 @@ fn read_binary(bytes: &[u8], version: Version) -> Result<(Header, Vec<f64>), Fil
     };
     let declared = (length("NumPoints")?, length("NumProfiles")?);
     let (columns, rows) = count(place, declared.0, declared.1)?;
+    let scale_places = [cursor.place(), Place::Byte(cursor.offset() + 8)];
     let scales = [cursor.f64("Xscale")?, cursor.f64("Yscale")?, cursor.f64("Zscale")?];
+    check_spacings(&scales, rows, scale_places)?;
     cursor.f64("Zresolution")?;
     let place = cursor.place();
     let compression = cursor.u8("Compression")?;
@@ -208,6 +218,11 @@ fn text_header(fields: &[(String, String, usize)]) -> Result<Header, FileProblem
     let (columns, rows) = count(Place::Line(points.1), declared.0, declared.1)?;
     let scale = |key| find(key).and_then(|field| value::<f64>(field, key));
     let scales = [scale("Xscale")?, scale("Yscale")?, scale("Zscale")?];
+    check_spacings(
+        &scales,
+        rows,
+        [Place::Line(find("Xscale")?.1), Place::Line(find("Yscale")?.1)],
+    )?;
     let code = |key| match find(key) {
         Ok(field) => value::<u64>(field, key).map(|code| (code, field.1)),
         Err(_) => Ok((0, 1)),

@@ -10,11 +10,23 @@ pub use write::write;
 
 use super::bytes::{Number, count};
 use super::error::{FileProblem, Place, unexpected};
-use super::{Grid, ScanFile, grid};
+use super::{Grid, ScanFile, grid, spacing};
 use archive::Archive;
 use document::Document;
 
 const MAIN: &str = "main.xml";
+/// What is read of the record of the measurement: name and element.
+const FIELDS: [(&str, &str); 9] = [
+    ("manufacturer", "Record2/Instrument/Manufacturer"),
+    ("model", "Record2/Instrument/Model"),
+    ("serial", "Record2/Instrument/Serial"),
+    ("version", "Record2/Instrument/Version"),
+    ("probing system", "Record2/ProbingSystem/Type"),
+    ("probing system identification", "Record2/ProbingSystem/Identification"),
+    ("created", "Record2/Date"),
+    ("creator", "Record2/Creator"),
+    ("comment", "Record2/Comment"),
+];
 
 /// Reads an X3P file: profiles (`PRF`) and surfaces (`SUR`) on equal spacing.
 pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
@@ -105,7 +117,7 @@ fn height_type(document: &Document) -> Result<Number, FileProblem> {
 }
 
 fn spacings(document: &Document, rows: usize) -> Result<(f64, f64), FileProblem> {
-    let spacing = |name: &str| {
+    let increment = |name: &str| {
         let path = format!("Record1/Axes/{name}/AxisType");
         match document.required(&path)? {
             "I" => {}
@@ -121,12 +133,14 @@ fn spacings(document: &Document, rows: usize) -> Result<(f64, f64), FileProblem>
             }
         }
         let path = format!("Record1/Axes/{name}/Increment");
-        document.number(&path)?.ok_or_else(|| {
-            unexpected(Place::Element(path), "the increment", "absent", "a length in m")
-        })
+        let place = Place::Element(path.clone());
+        match document.number(&path)? {
+            Some(metres) => spacing(place, metres),
+            None => Err(unexpected(place, "the increment", "absent", "a length in m")),
+        }
     };
-    let x = spacing("CX")?;
-    Ok((x, if rows == 1 { x } else { spacing("CY")? }))
+    let x = increment("CX")?;
+    Ok((x, if rows == 1 { x } else { increment("CY")? }))
 }
 
 /// Heights of the binary matrix, NaN where they are not valid.
@@ -167,17 +181,6 @@ fn listed(document: &Document, points: usize) -> Result<Vec<f64>, FileProblem> {
 }
 
 fn instrument(document: &Document) -> Vec<(String, String)> {
-    const FIELDS: [(&str, &str); 9] = [
-        ("manufacturer", "Record2/Instrument/Manufacturer"),
-        ("model", "Record2/Instrument/Model"),
-        ("serial", "Record2/Instrument/Serial"),
-        ("version", "Record2/Instrument/Version"),
-        ("probing system", "Record2/ProbingSystem/Type"),
-        ("probing system identification", "Record2/ProbingSystem/Identification"),
-        ("created", "Record2/Date"),
-        ("creator", "Record2/Creator"),
-        ("comment", "Record2/Comment"),
-    ];
     FIELDS
         .into_iter()
         .filter_map(|(name, path)| Some((name.to_owned(), document.text(path)?.to_owned())))

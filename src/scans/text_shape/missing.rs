@@ -1,0 +1,52 @@
+//! Marks of missing heights: words, and numbers that no height comes near.
+
+use crate::scans::description::default_missing;
+
+/// Words that stand for a missing height.
+const WORDS: [&str; 8] = ["", "nan", "bad", "na", "n/a", "null", "---", "*"];
+
+/// Whether a cell is a word for a missing height.
+pub(super) fn is_word(cell: &str) -> bool {
+    WORDS.iter().any(|word| word.eq_ignore_ascii_case(cell))
+}
+
+/// The words among the cells that a description has to list.
+pub(super) fn words(cells: impl Iterator<Item = String>) -> Vec<String> {
+    let known = default_missing();
+    let mut found: Vec<String> = Vec::new();
+    for cell in cells.filter(|cell| is_word(cell)) {
+        if !known.iter().chain(&found).any(|word| word.eq_ignore_ascii_case(&cell)) {
+            found.push(cell);
+        }
+    }
+    found
+}
+
+/// The smallest and the largest number where they stand there more than once, further from the
+/// numbers between them than three times the range of these. A clipped height repeats as well, but
+/// close to the others.
+pub(super) fn numbers(heights: &[f64]) -> Vec<f64> {
+    const RANGES: f64 = 3.0;
+    let mut rest: Vec<f64> = heights.iter().copied().filter(|height| height.is_finite()).collect();
+    rest.sort_by(f64::total_cmp);
+    let mut rest = rest.as_slice();
+    let mut marks = Vec::new();
+    // Some instruments mark points out of range and points without light by different numbers.
+    for _ in 0..4 {
+        let (Some(&lowest), Some(&highest)) = (rest.first(), rest.last()) else { break };
+        let above = rest.partition_point(|height| *height <= lowest);
+        let below = rest.partition_point(|height| *height < highest);
+        let Some([first, .., last]) = rest.get(above..below) else { break };
+        let far = RANGES * (last - first);
+        if above > 1 && first - lowest > far {
+            marks.push(lowest);
+            rest = &rest[above..];
+        } else if rest.len() - below > 1 && highest - last > far {
+            marks.push(highest);
+            rest = &rest[..below];
+        } else {
+            break;
+        }
+    }
+    marks
+}
