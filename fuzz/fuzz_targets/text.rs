@@ -1,10 +1,28 @@
 #![no_main]
-//! Texts of unknown shape.
+//! Texts of unknown shape, height maps of Gwyddion, and the descriptions proposed for the rest.
 
+use asperity_fuzz::scans::text_shape::TextShape;
+use asperity_fuzz::scans::{TextFormat, parse_text};
 use libfuzzer_sys::fuzz_target;
 
+#[derive(serde::Deserialize)]
+struct File {
+    ingest: Ingest,
+}
+
+#[derive(serde::Deserialize)]
+struct Ingest {
+    text: TextFormat,
+}
+
 fuzz_target!(|bytes: &[u8]| {
-    if let Some(shape) = asperity_fuzz::scans::text_shape::TextShape::of(bytes) {
-        let _ = shape.recipe_section();
+    asperity_fuzz::read(bytes);
+    if let Some(shape) = TextShape::of(bytes) {
+        let section = shape.recipe_section();
+        if let Ok(format) = shape.format() {
+            let file: File = toml::from_str(&section).expect("the proposed section is TOML");
+            assert_eq!(file.ingest.text, format);
+            let _ = parse_text("fuzz", bytes, &format);
+        }
     }
 });

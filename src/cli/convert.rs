@@ -8,12 +8,12 @@ use clap::Args;
 use super::CliError;
 use super::inspect::ScanOptions;
 use super::output::{print, write_file};
-use crate::scans::file::{Grid, ScanFile, read_file, write_x3p};
+use crate::scans::file::{Grid, ScanFile, read_file, write_sdf, write_x3p};
 use crate::scans::read_text;
 use crate::surface::RawScan;
 
 /// Positions that are further than this share of the spacing from equal spacing are information
-/// that X3P has no place for.
+/// that X3P and SDF have no place for.
 const LARGEST_JITTER: f64 = 0.1;
 
 const EXAMPLES: &str = "\
@@ -24,17 +24,17 @@ Examples:
     asperity convert scan_01.txt --to scan_01.x3p --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um
     asperity convert scan_01.x3p --to scan_01.csv";
 
-/// Convert a scan to X3P (ISO 25178-72) or CSV.
+/// Convert a scan to X3P (ISO 25178-72), SDF (ISO 25178-71) or CSV.
 ///
-/// FILE is an instrument file (SDF, X3P, Digital Surf, ERD), told by its content, or text described
+/// FILE is an instrument file (SDF, X3P, Digital Surf, ERD, Gwyddion text), told by its content, or text described
 /// by the options of `inspect`. The new format is told by the name: .x3p (64-bit binary heights, MD5
-/// checksums, mask of missing points) or .csv (x_m, for maps y_m, and z_m; empty where missing).
+/// checksums, mask of missing points), .sdf (text, BAD where missing) or .csv (x_m, for maps y_m, and z_m; empty where missing).
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Convert {
     /// The scan.
     file: PathBuf,
-    /// New file, *.x3p or *.csv.
+    /// New file, *.x3p, *.sdf or *.csv.
     #[arg(long, value_name = "OUT")]
     to: PathBuf,
     /// Overwrite the new file if it is there.
@@ -52,10 +52,16 @@ impl Convert {
                 let bytes = write_x3p(&self.on_grid()?).map_err(CliError::failure)?;
                 write_file(&self.to, self.force, |out| out.write_all(&bytes))?;
             }
+            Some("sdf") => {
+                let text = write_sdf(&self.on_grid()?);
+                write_file(&self.to, self.force, |out| out.write_all(text.as_bytes()))?;
+            }
             Some("csv") => write_file(&self.to, self.force, self.csv()?)?,
             _ => {
                 let name = self.to.display();
-                return Err(CliError::input(format!("{name}: call the new file *.x3p or *.csv")));
+                return Err(CliError::input(format!(
+                    "{name}: call the new file *.x3p, *.sdf or *.csv"
+                )));
             }
         }
         print(&if quiet { String::new() } else { format!("{}\n", self.to.display()) })
@@ -105,7 +111,7 @@ fn equally_spaced(path: &Path, scan: RawScan) -> Result<ScanFile, CliError> {
     let largest = scan.positions.iter().enumerate().map(deviation).fold(0.0, f64::max);
     if largest > LARGEST_JITTER * spacing {
         return Err(CliError::input(format!(
-            "{}: a position is {:.3} um off equal spacing of {:.3} um, for which X3P has no place; \
+            "{}: a position is {:.3} um off equal spacing of {:.3} um, for which X3P and SDF have no place; \
              convert it to .csv",
             path.display(),
             largest * 1e6,

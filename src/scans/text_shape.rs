@@ -339,11 +339,17 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
     let commented = comment.is_some() && preamble.iter().all(|line| is_comment(line, comment));
     let marker = preamble.last().map(|line| line.trim());
     let skip_until = marker.filter(|line| !commented && is_marker(line)).map(str::to_owned);
+    let above = preamble.last().filter(|line| header && !is_comment(line, comment));
+    let above = above
+        .map(|line| layout.cells(line))
+        .filter(|cells| cells.len() >= width)
+        .unwrap_or_default();
     let column = |number: usize| {
         let name = names.get(number).cloned().unwrap_or_default();
         let values: Vec<f64> = body.rows.iter().map(|row| row[number]).collect();
         TextColumn {
-            unit: unit_in(&name),
+            unit: unit_in(&name)
+                .or_else(|| unit_of_two(above.get(number).map_or("", String::as_str), &name)),
             grows: values.windows(2).all(|pair| pair[1] > pair[0]),
             name,
         }
@@ -370,7 +376,7 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
     let points = &lines[body.start..body.start + body.rows.len()];
     let mut missing =
         missing::words(points.iter().filter_map(|line| layout.cells(line).into_iter().nth(z)));
-    missing.extend(missing::numbers(&numbers).into_iter().map(|mark| mark.to_string()));
+    missing.extend(missing::numbers(&numbers).into_iter().map(missing::mark_text));
     TextShape { missing, ..shape }
 }
 
@@ -404,6 +410,14 @@ fn unit_in(name: &str) -> Option<LengthUnit> {
         "m" => Some(LengthUnit::M),
         _ => None,
     }
+}
+
+/// The unit in two lines of names, of which either may hold it: `x` above `mm`, `x (mm)` above `1`.
+fn unit_of_two(above: &str, name: &str) -> Option<LengthUnit> {
+    if above.is_empty() {
+        return None;
+    }
+    unit_in(&format!("{above} {name}")).or_else(|| unit_in(above))
 }
 
 fn states_unit(line: &str) -> bool {

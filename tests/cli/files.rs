@@ -40,6 +40,11 @@ fn bundled_formats_hold_the_same_scan() {
     assert_eq!(x3p["points"], 400);
     assert!(x3p["missing"].as_u64().unwrap() > 0, "{x3p}");
     assert!(x3p["detected"].as_str().unwrap().contains("checksum verified"), "{x3p}");
+    let sdf = inspected(&project("data/scans/formats/scan_1.sdf"));
+    assert_eq!(sdf["format"], "SDF aISO-1.0");
+    for key in ["points", "missing", "spacing_m", "mean_m", "std_m"] {
+        assert_eq!(sdf[key], x3p[key], "{key}");
+    }
     let csv = format!(
         "inspect {} --json --separator comma --x-column x_m --x-unit m --z-column z_m --z-unit m",
         "{}"
@@ -58,10 +63,13 @@ fn convert_writes_what_inspect_reads_and_overwrites_only_on_demand() {
     let command = format!("convert {} --to {}", source.display(), copy.display());
     asperity(&command).result();
     assert_eq!(fs::read(&source).unwrap(), fs::read(&copy).unwrap());
+    let sdf = folder.path().join("copy.sdf");
+    asperity(&format!("convert {} --to {}", source.display(), sdf.display())).result();
+    assert_eq!(fs::read(project("data/scans/formats/scan_1.sdf")).unwrap(), fs::read(sdf).unwrap());
     assert!(asperity(&command).error(2).contains("--force"));
     let odd =
         format!("convert {} --to {}", source.display(), folder.path().join("a.txt").display());
-    assert!(asperity(&odd).error(2).contains("*.x3p or *.csv"));
+    assert!(asperity(&odd).error(2).contains("*.x3p, *.sdf or *.csv"));
 }
 
 #[test]
@@ -97,6 +105,94 @@ fn a_text_without_options_is_described() {
     }
     let found = inspected(&path);
     assert_eq!((&found["kind"], &found["comment"]), (&json!("text"), &json!("#")));
+    let described = asperity_at(
+        "inspect {} --json --separator semicolon --comment # --x-column x_mm --x-unit mm --z-column z_um --z-unit um",
+        &path,
+    );
+    let described = described.json();
+    for key in ["format", "points", "missing", "spacing_m", "mean_m", "std_m"] {
+        assert!(!found[key].is_null() && found[key] == described[key], "{key}: {found}");
+    }
+}
+
+/// The texts beside the reference files: what they state is read, what they do not is asked for.
+#[test]
+fn reference_texts_are_inspected() {
+    let folder = project("../shared");
+    let text = folder.join("formats/text");
+    if !text.exists() {
+        println!("skipped: {} is not there", text.display());
+        return;
+    }
+    let near = |found: &Value, key: &str, expected: f64| {
+        let value = found[key].as_f64().unwrap();
+        assert!((value / expected - 1.0).abs() < 1e-12, "{key}: {found}");
+    };
+    // 12.34 um on 3 columns, 5678.9 nm on 4 rows; heights 1 1.5 3, -2 -3 -6, 0 0 0, 9 9 9 m.
+    let map = inspected(&text.join("gwyddion-export-german.txt"));
+    assert_eq!((&map["format"], &map["shape"]), (&json!("Gwyddion text"), &json!([4, 3])));
+    near(&map, "spacing_m", 12.34e-6 / 3.0);
+    near(&map, "spacing_y_m", 5678.9e-9 / 4.0);
+    near(&map, "mean_m", 21.5 / 12.0);
+    near(&map, "std_m", (304.25 / 12.0 - (21.5_f64 / 12.0).powi(2)).sqrt());
+    let bare = inspected(&text.join("nonuniform.asc"));
+    assert_eq!((&bare["points"], &bare["mean_m"]), (&json!(134), &Value::Null));
+    assert!(bare["unread"].as_str().unwrap().contains("x_unit, z_unit"), "{bare}");
+    let road = inspected(&folder.join("scans/captif/20211011_aylesbury_dec_station_0.dat"));
+    assert_eq!((&road["points"], &road["missing"]), (&json!(51067), &json!(4373)));
+    assert!(road["mean_m"].is_f64() && road["std_m"].is_f64(), "{road}");
+}
+
+/// Files as they come: one clear error with the name of the file, the place and what to do, or an
+/// answer that says what is not read.
+#[test]
+fn clumsy_files_are_answered_clearly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.dat");
+    let sdf = fs::read(project("data/scans/formats/scan_1.sdf")).unwrap();
+    let changed = |from: &str, to: &str| {
+        String::from_utf8(sdf.clone()).unwrap().replacen(from, to, 1).into_bytes()
+    };
+    let x3p = fs::read(project("data/scans/formats/scan_1.x3p")).unwrap();
+    let missing = String::from(
+        "aISO-1.0\nNumPoints=2\nNumProfiles=1\nXscale=1e-6\nYscale=0\nZscale=1\n\
+                                DataType=7\n*\nBAD BAD\n*\n",
+    );
+    let errors: [(&[u8], &[&str]); 8] = [
+        (b"", &["is empty"]),
+        (&sdf[..sdf.len() / 2], &["line ", "expected 400", "copy the file again"]),
+        (&x3p[..x3p.len() / 2], &["no zip archive", "copy the file again"]),
+        (&changed("NumPoints = 400", "NumPoints = 4000000000"), &["line 5", "limit of 268435456"]),
+        (&changed("Xscale = 1e-5", "Xscale = 1e5"), &["line 7", "spacing", "check"]),
+        (missing.as_bytes(), &["all 2 heights are missing"]),
+        (b"PK\x05\x06\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", &["is none of"]),
+        (b"no\nnumbers\n", &["without lines of numbers"]),
+    ];
+    for (bytes, parts) in errors {
+        fs::write(&path, bytes).unwrap();
+        let error = asperity_at("inspect {}", &path).error(2);
+        for part in parts.iter().chain(&["scan.dat"]) {
+            assert!(error.contains(part), "`{part}` is not in {error}");
+        }
+    }
+    let directory = asperity(&format!(
+        "convert {} --to {}/a.x3p",
+        project("src").display(),
+        folder.path().display()
+    ));
+    assert!(directory.error(2).contains("src"));
+    // The name says nothing; two lines of names, decimal commas, UTF-16 with a mark are seen through.
+    let utf16: Vec<u8> = "\u{feff}x;z\r\nmm;um\r\n0,0;1,5\r\n0,1;2,5\r\n0,2;2,0\r\n"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    fs::write(&path, utf16).unwrap();
+    let found = inspected(&path);
+    assert_eq!((&found["points"], &found["encoding"]), (&json!(3), &json!("utf-16le")));
+    assert!((found["mean_m"].as_f64().unwrap() / 2e-6 - 1.0).abs() < 1e-12, "{found}");
+    let row = "1 2 3 4 5 6 7 8 9 10 11 12 13\n";
+    fs::write(&path, row.repeat(3)).unwrap();
+    assert!(inspected(&path)["unread"].as_str().unwrap().contains("height map"));
 }
 
 /// Truncation at many lengths and a flipped bit at many places: an answer or an error with the
@@ -111,12 +207,11 @@ fn damaged_files_are_an_answer_or_a_clear_error() {
             }
             let _ = TextShape::of(bytes.get(..20_000).unwrap_or(bytes));
         };
-        // Headers are dense in meaning; the rest is sampled. Of large files, which take longer,
-        // every place of the first is not tried.
+        // Headers are dense in meaning; the rest is sampled, and large files more coarsely.
         let length = bytes.len();
-        let stride = if length > 100_000 { 41 } else { 3 };
-        let places =
-            || (0..length.min(700)).step_by(stride).chain((0..40).map(move |i| i * length / 40));
+        let (stride, samples) = if length > 100_000 { (97, 10) } else { (3, 40) };
+        let sampled = move |i: usize| i * length / samples;
+        let places = || (0..length.min(700)).step_by(stride).chain((0..samples).map(sampled));
         for length in places() {
             read(&bytes[..length]);
         }

@@ -31,7 +31,7 @@ Examples:
   A table, arrays, a manifest, the folder of a stage or of a whole run:
     asperity inspect runs/asphalt/bem/solves.arrow
     asperity inspect runs/asphalt
-  A file of an instrument (SDF, X3P, Digital Surf, ERD):
+  A file of an instrument (SDF, X3P, Digital Surf, ERD, Gwyddion text):
     asperity inspect specimen.x3p --json
   A text scan: first what it looks like, then with its units, which are never guessed:
     asperity inspect data/scans/specimen/scan_01.txt
@@ -96,7 +96,7 @@ impl Inspect {
             Format::Binary => {
                 return Err(foreign(
                     path,
-                    "is none of Arrow table, HDF5 file, manifest and text; nor a known file of an instrument (SDF, X3P, Digital Surf, ERD); convert it to text first if it is a scan",
+                    "is none of Arrow table, HDF5 file, manifest and text; nor a known file of an instrument (SDF, X3P, Digital Surf, ERD, Gwyddion text); export it as X3P, SDF or text first if it is a scan",
                 ));
             }
         })

@@ -12,6 +12,9 @@ use crate::scans::description::{DecimalMark, LengthUnit, Separator};
 use crate::scans::parse_text;
 use crate::scans::text_shape::{self, separator_text};
 
+/// More columns than a file of profiles has; without names they are the rows of a height map.
+const MOST_COLUMNS: usize = 12;
+
 /// What a text looks like.
 #[derive(Debug, Serialize)]
 pub(super) struct TextShape {
@@ -110,7 +113,11 @@ impl TextShape {
             let grows = if column.grows { ", grows" } else { "" };
             format!("{} `{}`: {unit}{grows}", index + 1, column.name)
         };
-        let columns: Vec<String> = self.columns.iter().enumerate().map(column).collect();
+        let mut columns: Vec<String> =
+            self.columns.iter().enumerate().take(MOST_COLUMNS).map(column).collect();
+        if self.columns.len() > MOST_COLUMNS {
+            columns.push(format!("... {} in all", self.columns.len()));
+        }
         let before = match &self.skip_until {
             Some(marker) => format!("{} lines, the last is `{marker}`", self.skip_lines),
             None => format!("{} lines to skip", self.skip_lines),
@@ -145,7 +152,7 @@ impl TextShape {
                     .join(", "),
             ),
             ("stated units", self.stated.join("\n")),
-            ("with the description below", numbers),
+            ("with the proposal", numbers),
         ]);
         format!("{lines}\na description for the recipe, to be checked:\n\n{}", self.recipe_section)
     }
@@ -157,6 +164,13 @@ fn statistics(
     bytes: &[u8],
     shape: &text_shape::TextShape,
 ) -> Result<Statistics, String> {
+    if shape.columns.len() > MOST_COLUMNS && !shape.header {
+        return Err(format!(
+            "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, \
+             SDF or, from Gwyddion, as text with its comment lines",
+            shape.columns.len()
+        ));
+    }
     let format = shape.format().map_err(|keys| {
         format!("not read: the file does not state {}; units are never guessed", keys.join(", "))
     })?;

@@ -17,11 +17,13 @@ mod erd;
 pub mod error;
 mod gwyddion;
 mod sdf;
+mod sdf_write;
 #[cfg(test)]
 mod tests;
 mod x3p;
 
 pub use error::{FileError, FileProblem, Place};
+pub use sdf_write::write as write_sdf;
 pub use x3p::write as write_x3p;
 
 use crate::surface::RawScan;

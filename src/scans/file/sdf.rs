@@ -59,7 +59,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
         .into_iter()
         .map(|value| if version.is_missing(value, number) { f64::NAN } else { value * z })
         .collect();
-    let Header { columns, rows, instrument, .. } = header;
+    let Header { columns, rows, mut instrument, .. } = header;
+    // Dates that are not known are twelve zeros.
+    instrument.retain(|(_, value)| value.chars().any(|c| c != '0'));
     Ok(ScanFile {
         format: format!("SDF {}", version.name),
         detected: format!(
@@ -175,7 +177,7 @@ fn read_text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FileProblem> {
             raw.push(height(word, index + 1)?);
         }
         if raw.len() > points {
-            let expected = format!("{points} (NumPoints times NumProfiles)");
+            let expected = format!("{points} (NumPoints times NumProfiles); copy the file again");
             return Err(unexpected(
                 Place::Line(index + 1),
                 "the number of heights",
@@ -186,7 +188,7 @@ fn read_text(bytes: &[u8]) -> Result<(Header, Vec<f64>), FileProblem> {
     }
     if raw.len() != points {
         let place = Place::Line(text.lines().count());
-        let expected = format!("{points} (NumPoints times NumProfiles)");
+        let expected = format!("{points} (NumPoints times NumProfiles); copy the file again");
         return Err(unexpected(place, "the number of heights", raw.len(), expected));
     }
     Ok((header, raw))

@@ -295,6 +295,93 @@ fn x3p_checksums_that_differ_are_errors() {
 }
 
 #[test]
+fn an_archive_that_is_no_x3p_or_holds_nothing_is_told() {
+    contains_all(&error(&archive(&[("main.xml", b"")])), &["main.xml", "empty"]);
+    let document = x3p_document("I", (1, 1), LINK);
+    let members = [("main.xml", document.as_bytes()), ("bindata/data.bin", b"".as_slice())];
+    contains_all(&error(&archive(&members)), &["bindata/data.bin", "`0`", "expected 2"]);
+}
+
+#[test]
+fn the_record_of_the_instrument_is_written_and_read() {
+    let text = |texts: &[(&str, &str)]| -> Vec<(String, String)> {
+        texts.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect()
+    };
+    let mut scan = ScanFile {
+        format: "test".into(),
+        detected: String::new(),
+        grid: Grid::Profile { spacing: 1e-6 },
+        heights: vec![1e-6, 2e-6],
+        instrument: text(&[
+            ("manufacturer", "A & <B>"),
+            ("model", "M\u{0}1"),
+            ("created", "2021-10-11T09:30:00"),
+            ("operator", "me"),
+        ]),
+    };
+    let expected = text(&[
+        ("manufacturer", "A & <B>"),
+        ("model", "M 1"),
+        ("created", "2021-10-11T09:30:00"),
+        ("comment", "operator: me"),
+    ]);
+    assert_eq!(parse(&write_x3p(&scan).unwrap()).unwrap().instrument, expected);
+    // A date that XML does not know stays as a text.
+    scan.instrument = text(&[("created", "010120261200"), ("comment", "dry")]);
+    let expected = text(&[("comment", "dry; created: 010120261200")]);
+    assert_eq!(parse(&write_x3p(&scan).unwrap()).unwrap().instrument, expected);
+}
+
+const GWYDDION: &str = "# Canal: a\n# Largeur: 1,5 \u{b5}m\n# Hauteur: 20 nm\n# Value units: nm\n1,5\t2\tnan\n4\t5\t6\n";
+
+#[test]
+fn a_gwyddion_text_is_a_map_whatever_its_language() {
+    let latin1 = encoding_rs::WINDOWS_1252.encode(GWYDDION).0;
+    let marked = [b"\xef\xbb\xbf", GWYDDION.as_bytes()].concat();
+    for bytes in [GWYDDION.as_bytes(), &latin1, &marked] {
+        let scan = parse(bytes).unwrap();
+        let Grid::Map { columns, rows, spacing_x, spacing_y } = scan.grid else {
+            panic!("{scan:?}")
+        };
+        assert_eq!((columns, rows, scan.missing()), (3, 2, 1));
+        approx::assert_relative_eq!(spacing_x, 0.5e-6, max_relative = 1e-15);
+        approx::assert_relative_eq!(spacing_y, 10e-9, max_relative = 1e-15);
+        assert!(same(&scan.heights, &[1.5, 2.0, f64::NAN, 4.0, 5.0, 6.0].map(|z| z * 1e-9)));
+    }
+    let changed = |from, to| error(GWYDDION.replace(from, to).as_bytes());
+    contains_all(&changed("units: nm", "units: V"), &["line 4", "`V`", "a length"]);
+    contains_all(&changed("5\t6", "5"), &["line 6", "`2`", "3 as in"]);
+    contains_all(&changed("5\t6", "5\tx"), &["line 6", "`x`", "a number"]);
+    contains_all(&changed("20 nm", "-20 nm"), &["line 3", "spacing"]);
+    // Comments of other programmes are no header.
+    for other in ["# a\n1 2\n", "# a: 1\n# b: 2 mm\n# c: 3 mm\n# d: 4\n1 2\n"] {
+        assert_eq!(Family::detect(other.as_bytes()), None);
+    }
+}
+
+#[test]
+fn spacings_that_no_scan_has_are_named_with_their_place() {
+    let mut bytes = sdf("bISO-1.0", 2, 2, 5, &[0; 8]);
+    bytes[46..54].copy_from_slice(&5e3_f64.to_le_bytes());
+    contains_all(&error(&bytes), &["file: byte 46", "`5e3`", "10 m"]);
+    bytes[46..62].copy_from_slice(&[1e-6_f64.to_le_bytes(), 0_f64.to_le_bytes()].concat());
+    contains_all(&error(&bytes), &["file: byte 54", "`0e0`"]);
+    let mut bytes = digital_surf(2, 16, 2, 2, &[0; 8], false);
+    bytes[124..128].copy_from_slice(&f32::NAN.to_le_bytes());
+    contains_all(&error(&bytes), &["file: byte 124", "NaN"]);
+    let document = x3p_document("I", (1, 1), LINK).replacen("2e-6", "2e6", 1);
+    let members = [("main.xml", document.as_bytes()), ("bindata/data.bin", &[1, 0])];
+    contains_all(&error(&archive(&members)), &["CX/Increment", "`2e6`"]);
+    contains_all(
+        &error(b"ERDFILEV2.00\n1,-1,-1,1,5,0,-1\nUNITSNAMmm\nXUNITS  m\nEND\n1\n2\n"),
+        &["line 2", "spacing"],
+    );
+    // A mark that the format does not define: which height it is.
+    let raw: Vec<u8> = [1.0, 1e30_f64].iter().flat_map(|z| z.to_le_bytes()).collect();
+    contains_all(&error(&sdf("bISO-1.0", 2, 1, 7, &raw)), &["height 2", "mark of missing"]);
+}
+
+#[test]
 fn a_zip_bomb_is_refused_by_its_ratio() {
     let zeros = vec![0; 8 << 20];
     let document = x3p_document("D", (1 << 20, 1), LINK);
@@ -369,15 +456,18 @@ proptest! {
         let back = parse(&write_x3p(&scan).unwrap()).unwrap();
         prop_assert_eq!(back.grid, scan.grid);
         prop_assert!(same(&back.heights, &scan.heights));
+        let back = parse(write_sdf(&scan).as_bytes()).unwrap();
+        prop_assert_eq!(back.grid, scan.grid);
+        prop_assert!(same(&back.heights, &scan.heights));
     }
 
     #[test]
     fn any_bytes_behind_a_signature_are_an_answer(
-        family in 0..6_usize, bytes in prop::collection::vec(any::<u8>(), 0..600),
+        family in 0..7_usize, bytes in prop::collection::vec(any::<u8>(), 0..600),
     ) {
         let signature: &[u8] = [
             b"bISO-1.0".as_slice(), b"aISO-1.0\n", b"PK\x03\x04", b"DIGITAL SURF", b"DSCOMPRESSED",
-            b"ERDFILEV2.00\n",
+            b"ERDFILEV2.00\n", b"# a: b\n# c: 1 m\n# d: 1 m\n# e: m\n",
         ][family];
         let _ = parse_file("file", &[signature, &bytes].concat());
     }

@@ -50,3 +50,8 @@ pub(super) fn numbers(heights: &[f64]) -> Vec<f64> {
     }
     marks
 }
+
+/// A mark as a cell; the reader compares by value.
+pub(super) fn mark_text(mark: f64) -> String {
+    if mark.abs() < 1e15 { mark.to_string() } else { format!("{mark:e}") }
+}

@@ -18,7 +18,9 @@ fn description(shape: &TextShape) -> TextFormat {
     struct Ingest {
         text: TextFormat,
     }
-    toml::from_str::<Recipe>(&shape.recipe_section()).unwrap().ingest.text
+    let format = toml::from_str::<Recipe>(&shape.recipe_section()).unwrap().ingest.text;
+    assert_eq!(shape.format().as_ref(), Ok(&format));
+    format
 }
 
 #[test]
@@ -61,6 +63,7 @@ fn units_that_are_not_stated_are_asked_for() {
     let found = shape(b"   1.0e+00   2.0\n   2.0e+00   1.0\n   3.5e+00   4.0\n");
     let section = found.recipe_section();
     assert!(section.contains("# x_unit = ?") && section.contains("# z_unit = ?"), "{section}");
+    assert_eq!(found.format(), Err(vec!["x_unit", "z_unit"]));
     assert!(section.contains("header = false") && section.contains("x_column = 1"), "{section}");
 }
 
@@ -75,6 +78,38 @@ fn text_without_numbers_has_no_shape() {
 fn utf_16_without_a_mark_is_told() {
     let bytes: Vec<u8> = "0;1\n1;2\n2;1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert_eq!(shape(&bytes).encoding, "utf-16le");
+}
+
+#[test]
+fn marks_of_missing_heights_are_proposed() {
+    let height = |i: usize| match i {
+        7 | 9 | 2500 => "-9999.0".into(),
+        11 | 13 => "1e30".into(),
+        20 => "n/a".into(),
+        _ => format!("{}", (i % 10) as f64 - 4.5),
+    };
+    let line = |i: usize| format!("{:.2},{}\n", i as f64 / 100.0, height(i));
+    let text = String::from("x_mm,z_um\n") + &(0..3000).map(line).collect::<String>();
+    let found = shape(text.as_bytes());
+    assert_eq!((found.missing.join(" "), found.rows), ("n/a -9999 1e30".into(), 3000));
+    let scan = parse_text("a", text.as_bytes(), &description(&found)).unwrap();
+    assert_eq!(scan.heights.iter().filter(|z| z.is_nan()).count(), 6);
+    // Clipped heights, a single outlier and a flat file mark nothing.
+    for heights in ["5 5 1 2 3 4", "-900 1 2 3 2 1", "2 2 2 2 2 2", "0 0 9 9"] {
+        let text = heights.split(' ').enumerate().map(|(i, z)| format!("{i},{z}\n"));
+        let found = shape(text.collect::<String>().as_bytes());
+        assert_eq!(found.missing, Vec::<String>::new(), "{heights}");
+    }
+}
+
+#[test]
+fn two_lines_of_names_and_heights_alone() {
+    for text in ["x;z\nmm;um\n0,0;1\n0,5;2\n1,0;1\n", "x (mm);z (um)\na;a\n0,0;1\n0,5;2\n1,0;1\n"] {
+        let scan = parse_text("a", text.as_bytes(), &description(&shape(text.as_bytes()))).unwrap();
+        assert_eq!(scan.heights, [1e-6, 2e-6, 1e-6]);
+    }
+    let found = shape(b"z_um\n1\nBAD\n3\n");
+    assert_eq!((found.rows, found.format()), (3, Err(vec!["x_spacing_um"])));
 }
 
 /// The texts beside the reference files.

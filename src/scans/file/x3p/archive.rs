@@ -50,7 +50,13 @@ impl<'a> Archive<'a> {
     pub(super) fn member(&mut self, name: &str) -> Result<Vec<u8>, FileProblem> {
         let place = || Place::Member(name.to_owned());
         let damaged = |reason: String| FileProblem::Damaged { place: place(), reason };
-        let index = self.find(name).ok_or_else(|| damaged("is not there".into()))?;
+        let index = self.find(name).ok_or_else(|| {
+            let expected = match name {
+                super::MAIN => "in every X3P file; from another archive unpack the scan first",
+                _ => "there, since the document names it; export the scan again",
+            };
+            super::unexpected(place(), "the member", "not there", expected)
+        })?;
         let file = self.zip.by_index(index).map_err(|error| damaged(error.to_string()))?;
         let (size, packed) = (file.size(), file.compressed_size());
         let limit = match packed.saturating_mul(LARGEST_RATIO) {

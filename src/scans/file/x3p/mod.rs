@@ -32,6 +32,10 @@ const FIELDS: [(&str, &str); 9] = [
 pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
     let mut archive = Archive::open(bytes)?;
     let main = archive.member(MAIN)?;
+    if main.trim_ascii().is_empty() {
+        let place = Place::Member(MAIN.into());
+        return Err(unexpected(place, "the document", "empty", "XML; export the scan again"));
+    }
     let document = Document::parse(&main)?;
     let checked = archive.check_document(&main, document.text("Record4/ChecksumFile"))?;
     let feature = document.required("Record1/FeatureType")?;
