@@ -8,6 +8,10 @@
 //! `sum_i m_i m_(i+k) (z_i - z_(i+k))^2`: three cyclic correlations of zero-padded sequences, so
 //! gaps need no filling and all lags cost five real FFTs.
 
+mod reliability;
+
+pub use reliability::{Probe, WAVELENGTHS_PER_SPOT};
+
 use super::LineScan;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex, num_complex::Complex};
