@@ -23,9 +23,9 @@ pub const AGREEMENT_FILE: &str = "agreement.arrow";
 /// Metadata of [`AGREEMENT_FILE`]: the largest relative difference.
 pub const LARGEST_DIFFERENCE_KEY: &str = "largest_relative_difference";
 
-/// Relative difference of correlation and spectrum beyond which a run warns. Windows weigh the parts
-/// of a scan differently, so that an average of thirty scans leaves some per cent.
-const LARGEST_DIFFERENCE: f64 = 0.25;
+/// Relative difference of correlation and spectrum beyond which a run warns: some per cent are what
+/// windows that weigh the parts of a scan differently leave of some tens of scans.
+const LARGEST_DIFFERENCE: f64 = 0.1;
 
 /// One-sided power spectral density: its integral over positive wavenumbers (rad/mm) is the mean
 /// square height. Half of it is the two-sided density. Window and normalisation stand in the
