@@ -37,7 +37,7 @@ def inside_environment():
 def self_affine_line(numpy):
     """Heights in metres with random phases, C1D ~ q^-2.3, root mean square 0.5 mm."""
     generator = numpy.random.default_rng(1)
-    k = numpy.arange(1, POINTS // 2 + 1)
+    k = numpy.arange(1, POINTS + 1)
     amplitudes = k ** (-1.15) * numpy.exp(2j * numpy.pi * generator.random(len(k)))
     # A period twice as long as the line: its ends differ, as those of a scan.
     heights = numpy.fft.irfft(numpy.concatenate([[0], amplitudes]), 2 * POINTS)[:POINTS]
@@ -79,10 +79,10 @@ def main():
 
     values = numpy.fromfile(FOLDER / "asperity.raw", "<f8")
     lags = POINTS // 2 + 1
-    # Theirs is half the mean square difference, and a two-sided density over all wavenumbers.
+    # Theirs is half the mean square difference, and a two-sided density over frequencies q / (2 pi).
     apart = {
         "correlation": difference(2 * correlation[1:lags], values[1:lags]),
-        "spectrum": difference(2 * density[1 : POINTS // 2 - 1], values[lags + 1 : lags + POINTS // 2 - 1]),
+        "spectrum": difference(density[1 : POINTS // 2 - 1] / numpy.pi, values[lags + 1 : lags + POINTS // 2 - 1]),
     }
     print(f"{POINTS} points, one thread, medians of {ROUNDS} rounds of {REPEATS}")
     print(f"| | SurfaceTopography {VERSION} | asperity | ratio | largest relative difference |\n|---|---|---|---|---|")

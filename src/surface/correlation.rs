@@ -222,12 +222,16 @@ impl CorrelationPlan {
         let points = heights.len();
         let transform = self.spectrum(heights, |z| z);
         let products = self.even_sequence(transform.iter().map(Complex::norm_sqr).collect());
-        let mut squares = 2.0 * heights.iter().map(|z| z * z).sum::<f64>();
+        // Compensated, as many small subtractions would cost digits of the small differences.
+        let (mut squares, mut lost) = (2.0 * products[0], 0.0);
         let mut values = Vec::with_capacity(points);
         for (lag, product) in products.iter().enumerate().take(points.min(self.maximum_lag + 1)) {
-            let sum = squares - 2.0 * product;
+            let sum = squares - 2.0 * product + lost;
             values.push((sum / (points - lag) as f64).max(0.0));
-            squares -= heights[lag].powi(2) + heights[points - 1 - lag].powi(2);
+            let ends = heights[lag].powi(2) + heights[points - 1 - lag].powi(2);
+            let rest = squares - ends;
+            lost += squares - rest - ends;
+            squares = rest;
         }
         let pairs = (0..values.len()).map(|lag| (points - lag) as u64).collect();
         (values, pairs)
