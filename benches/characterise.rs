@@ -1,5 +1,9 @@
-//! Characterisation of a measuring campaign: 30 scans of 160 000 points, one in two with gaps.
+//! Characterisation of a measuring campaign: 30 scans of 160 000 points, one in two with gaps; the
+//! kernels, and the stages ingest and characterise from text files to artifacts.
 
+use asperity::pipeline::{self, Selection};
+use asperity::recipe::Recipe;
+use asperity::stages::Stage;
 use asperity::surface::correlation::{correlate_scans, log_spaced_lags};
 use asperity::surface::parameters::AverageRoughness;
 use asperity::surface::self_affine::fit_self_affine;
@@ -13,7 +17,10 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::fmt::Write;
 use std::hint::black_box;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 const SCANS: u64 = 30;
 const POINTS: usize = 160_000;
@@ -75,5 +82,62 @@ fn all(scans: &[LineScan]) -> usize {
     bins.len() + samples.len() + fit.lags
 }
 
-criterion_group!(benches, characterise);
+/// The files of a campaign and a recipe for them, on the grid they were measured on.
+const RECIPE: &str = r#"
+title = "thirty scans"
+[ingest]
+scans = ["scans"]
+[ingest.text]
+separator = "semicolon"
+header = false
+x_spacing_um = 6.25
+z_column = 1
+z_unit = "um"
+missing = ["BAD"]
+[approximate]
+waves = [8]
+[realise]
+waves = [8]
+realisations = 1
+seed = 1
+[bem]
+rubber = "rubber.toml"
+speeds_mm_s = [10.0]
+"#;
+
+fn write_campaign(folder: &Path) -> Recipe {
+    let scans = folder.join("scans");
+    std::fs::create_dir(&scans).unwrap();
+    (0..SCANS).into_par_iter().for_each(|seed| {
+        let mut text = String::new();
+        for height in scan(seed).heights {
+            match height.is_nan() {
+                true => text.push_str("BAD\n"),
+                false => writeln!(text, "{:.2}", height * 1e6).unwrap(),
+            }
+        }
+        std::fs::write(scans.join(format!("{seed:02}.txt")), text).unwrap();
+    });
+    let rubber = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/rubber/table_2_1.toml");
+    std::fs::copy(rubber, folder.join("rubber.toml")).unwrap();
+    Recipe::parse(RECIPE, &folder.join("recipe.toml")).unwrap()
+}
+
+fn stages(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = write_campaign(folder.path());
+    let stage = |stage: Stage| {
+        let selection = Selection { only: Some(stage), force: Some(stage), from: None };
+        let interrupted = AtomicBool::new(false);
+        let out = folder.path().join("out");
+        pipeline::run(&recipe, &out, selection, &interrupted, &|_| {}).unwrap();
+    };
+    let mut group = criterion.benchmark_group("stages 30 x 160000");
+    group.sample_size(10);
+    group.bench_function("ingest", |bench| bench.iter(|| stage(Stage::Ingest)));
+    group.bench_function("characterise", |bench| bench.iter(|| stage(Stage::Characterise)));
+    group.finish();
+}
+
+criterion_group!(benches, characterise, stages);
 criterion_main!(benches);

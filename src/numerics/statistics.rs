@@ -42,6 +42,19 @@ pub fn student_t_975(degrees_of_freedom: f64) -> f64 {
         .inverse_cdf(0.975)
 }
 
+/// Half width of the two-sided 95 % jackknife interval from the n estimates that leave out one
+/// member of the sample each: `t sqrt((n - 1)/n sum of (estimate - mean)^2)`, Student's t with n - 1
+/// degrees of freedom.
+///
+/// # Panics
+/// For fewer than two estimates.
+pub fn jackknife_95(estimates: &[f64]) -> f64 {
+    let n = estimates.len() as f64;
+    let mean = estimates.iter().sum::<f64>() / n;
+    let squares: f64 = estimates.iter().map(|estimate| (estimate - mean).powi(2)).sum();
+    student_t_975(n - 1.0) * ((n - 1.0) / n * squares).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,6 +67,15 @@ mod tests {
         // t(0.975, 4) = 2.776445 in every table.
         let expected = 2.776_445_105 * 2.5_f64.sqrt() / 5.0_f64.sqrt();
         approx::assert_relative_eq!(estimate.confidence_95, expected, max_relative = 1e-8);
+    }
+
+    #[test]
+    fn the_jackknife_of_a_mean_is_its_interval() {
+        let values = [1.0, 2.5, 3.0, 4.0, 7.0];
+        let sum: f64 = values.iter().sum();
+        let without: Vec<f64> = values.iter().map(|value| (sum - value) / 4.0).collect();
+        let expected = MeanEstimate::of(&values).confidence_95;
+        approx::assert_relative_eq!(jackknife_95(&without), expected, max_relative = 1e-13);
     }
 
     #[test]

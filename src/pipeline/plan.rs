@@ -114,7 +114,8 @@ impl<'a> Plan<'a> {
                 let hybrid = chain.micro.map(|_| (Stage::Hybrid, hybrid::HYBRID_FILE));
                 let fem = chain.fem.map(|_| (Stage::Fem, fem::FEM_FILE));
                 let theories = (!chain.tables.theories.is_empty()).then_some(surfaces);
-                [curves].into_iter().chain(hybrid).chain(fem).chain(theories).collect()
+                let waves = (Stage::Approximate, approximate::WAVES_FILE);
+                [curves, waves].into_iter().chain(hybrid).chain(fem).chain(theories).collect()
             }
         }
     }

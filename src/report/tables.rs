@@ -216,6 +216,7 @@ mod tests {
             confidence_95: None,
             interpolation_error: 0.0,
             pressure_mpa: 1.0,
+            shortest_reliable_wavelength_mm: None,
         }
     }
 

@@ -1,9 +1,11 @@
 //! approximate: amplitudes of superposed sines with the correlation of the scans.
 
-use super::characterise::{AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY};
+use super::characterise::{
+    AVERAGE, CORRELATION_FILE, CorrelationRow, RELIABLE_KEY, WINDOW_LENGTH_KEY,
+};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
-use crate::numerics::statistics::student_t_975;
+use crate::numerics::statistics::jackknife_95;
 use crate::recipe::{Violation, demand};
 use crate::surface::SineScale;
 use crate::surface::correlation::CorrelationSample;
@@ -15,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[approximate]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -30,8 +32,8 @@ pub struct Approximate {
     /// Shortest wavelength in millimetres; two sample spacings if not set.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shortest_wavelength_mm: Option<f64>,
-    /// What to do with waves that the scans do not determine, shorter than two samples or longer
-    /// than half a window: `drop` them or `keep` them with a warning.
+    /// What to do with waves that the scans do not determine, shorter than two samples or
+    /// than what the instrument shows (`characterise.spot_diameter_um`), or longer than half a window: `drop` them or `keep` them with a warning.
     #[serde(default)]
     pub undetermined: Undetermined,
     /// Longest lag of the fit in millimetres; that of the correlation if not set.
@@ -214,6 +216,9 @@ pub fn run(
     }
     let (rows, metadata) = run.read_table::<CorrelationRow>("characterise", CORRELATION_FILE)?;
     let window_length = metadata.get(WINDOW_LENGTH_KEY).and_then(|mm| mm.parse::<f64>().ok());
+    let reliable_mm = metadata.get(RELIABLE_KEY).cloned().unwrap_or_default();
+    // The schema of the correlation has had it from revision 4 on.
+    let reliable = reliable_mm.parse::<f64>().unwrap_or(0.0) / 1e3;
     let correlations = Correlations::of(rows, parameters.longest_lag_mm, window_length);
     let (mut scales, mut fits, mut fitted, mut warnings) = (vec![], vec![], vec![], vec![]);
     for &waves in &parameters.waves {
@@ -224,6 +229,7 @@ pub fn run(
         let (wavelengths, beyond) = Ladder::new(base, spacing, waves as usize)?.for_scans(
             spacing,
             window,
+            reliable,
             parameters.undetermined,
         )?;
         let fit = fit_sines(&correlations.average, &wavelengths).map_err(in_this)?;
@@ -244,6 +250,7 @@ pub fn run(
         .iter()
         .enumerate()
         .map(|(i, w)| (format!("warning {}", i + 1), w.clone()))
+        .chain([(RELIABLE_KEY.to_owned(), reliable_mm)])
         .collect();
     context.pending.write_table(WAVES_FILE, &scales, &metadata)?;
     context.pending.write_table(FITS_FILE, &fits, &metadata)?;
@@ -329,12 +336,8 @@ impl Correlations {
                 Ok(fit.sine_scales().iter().map(|scale| scale.amplitude).collect())
             })
             .collect::<Result<_, _>>()?;
-        let count = n as f64;
-        let half_width = |i: usize| {
-            let mean = replicates.iter().map(|r| r[i]).sum::<f64>() / count;
-            let squares: f64 = replicates.iter().map(|r| (r[i] - mean).powi(2)).sum();
-            student_t_975(count - 1.0) * ((count - 1.0) / count * squares).sqrt()
-        };
+        let half_width =
+            |i: usize| jackknife_95(&replicates.iter().map(|r| r[i]).collect::<Vec<_>>());
         Ok((0..fit.scales.len()).map(|i| Some(half_width(i))).collect())
     }
 

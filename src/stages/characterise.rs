@@ -1,8 +1,13 @@
 //! characterise: roughness parameters, height-difference correlation, spectrum, self-affine fit,
 //! parameters of the standards.
 
+mod spectrum;
 mod standards;
 
+pub use spectrum::{
+    AGREEMENT_FILE, AgreementRow, HURST_FILE, HurstRow, ISOTROPIC_FILE, IsotropicRow,
+    LARGEST_DIFFERENCE_KEY, SPECTRUM_FILE, SpectrumRow,
+};
 pub use standards::{DEPTH_FILE, DepthRow, PROFILE_FILE, ProfileRow, TEXTURE_FILE, TextureRow};
 
 use super::ingest::read_windows;
@@ -10,18 +15,18 @@ use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
-use crate::surface::correlation::{HeightDifferenceCorrelation, correlate_scans};
+use crate::surface::correlation::{HeightDifferenceCorrelation, Probe, correlate_scans};
 use crate::surface::filter::ProfileFilter;
 use crate::surface::parameters::{AverageRoughness, RoughnessParameters};
 use crate::surface::profile::ProfileStandard;
 use crate::surface::self_affine::{ConfidenceInterval, LagRange, SelfAffineFit, fit_self_affine};
-use crate::surface::spectrum::{PowerSpectrum, Route, Window, power_spectra};
+use crate::surface::spectrum::{PowerSpectrum, Window, power_spectra};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// Section `[characterise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,8 +39,24 @@ pub struct Characterise {
     pub longest_lag_mm: Option<f64>,
     /// Bins a decade of the averaged spectrum.
     pub spectrum_bins_per_decade: usize,
-    /// Window of the spectrum where a scan has no gaps: `none` or `hann`.
-    pub spectrum_window: SpectrumWindow,
+    /// Window of the spectrum where a scan has no gaps: `none`, `hann` or `welch`.
+    pub spectrum_window: Window,
+    /// 1/e² diameter of the light spot in micrometres; waves shorter than twice of it are not
+    /// reliable. Not known by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spot_diameter_um: Option<f64>,
+    /// Radius of the tip of a stylus in micrometres; where the surface is more sharply curved than
+    /// half the tip, its waves are not reliable. Not known by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tip_radius_um: Option<f64>,
+    /// Shortest wavelength in millimetres of the Hurst exponent of the spectrum; the shortest
+    /// reliable one if not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hurst_shortest_wavelength_mm: Option<f64>,
+    /// Longest wavelength in millimetres of the Hurst exponent of the spectrum; the lateral
+    /// correlation length if not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hurst_longest_wavelength_mm: Option<f64>,
     /// Shortest lag of the self-affine fit in millimetres; one spacing if not set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub self_affine_shortest_lag_mm: Option<f64>,
@@ -63,23 +84,17 @@ pub struct Characterise {
     pub profile_depth_high_pass: bool,
 }
 
-/// Window of the spectrum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum SpectrumWindow {
-    /// None: Parseval holds exactly.
-    None,
-    /// Hann, normalised to the same power.
-    Hann,
-}
-
 impl Default for Characterise {
     fn default() -> Self {
         Self {
             lags_per_decade: 20,
             longest_lag_mm: None,
             spectrum_bins_per_decade: 10,
-            spectrum_window: SpectrumWindow::Hann,
+            spectrum_window: Window::Hann,
+            spot_diameter_um: None,
+            tip_radius_um: None,
+            hurst_shortest_wavelength_mm: None,
+            hurst_longest_wavelength_mm: None,
             self_affine_shortest_lag_mm: None,
             self_affine_longest_lag_mm: None,
             lambda_s_mm: None,
@@ -106,11 +121,23 @@ impl Characterise {
             ("characterise.lambda_s_mm", self.lambda_s_mm),
             ("characterise.lambda_c_mm", self.lambda_c_mm),
             ("characterise.section_length_mm", self.section_length_mm),
+            ("characterise.spot_diameter_um", self.spot_diameter_um),
+            ("characterise.tip_radius_um", self.tip_radius_um),
+            ("characterise.hurst_shortest_wavelength_mm", self.hurst_shortest_wavelength_mm),
+            ("characterise.hurst_longest_wavelength_mm", self.hurst_longest_wavelength_mm),
         ] {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
             demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
         Ok(())
+    }
+
+    fn probe(&self) -> Probe {
+        let metres = |um: f64| um / 1e6;
+        Probe {
+            spot_diameter: self.spot_diameter_um.map(metres),
+            tip_radius: self.tip_radius_um.map(metres),
+        }
     }
 }
 
@@ -120,12 +147,13 @@ pub const PARAMETERS_FILE: &str = "parameters.arrow";
 pub const AVERAGES_FILE: &str = "averages.arrow";
 /// Correlation at log-spaced lags, per window and averaged: `correlation.arrow`.
 pub const CORRELATION_FILE: &str = "correlation.arrow";
-/// Spectrum in log-spaced bins, per window and averaged: `spectrum.arrow`.
-pub const SPECTRUM_FILE: &str = "spectrum.arrow";
 /// Self-affine fit, per window and averaged: `self_affine.arrow`.
 pub const SELF_AFFINE_FILE: &str = "self_affine.arrow";
 /// Metadata of [`CORRELATION_FILE`]: length of the shortest window in millimetres.
 pub const WINDOW_LENGTH_KEY: &str = "window_length_mm";
+/// Metadata of [`CORRELATION_FILE`] and [`SPECTRUM_FILE`]: shortest wavelength in millimetres that the
+/// instrument and its spacing show as it is.
+pub const RELIABLE_KEY: &str = "shortest_reliable_wavelength_mm";
 /// What stands in the column `scan` for the average over all windows.
 pub const AVERAGE: &str = "average";
 
@@ -209,29 +237,6 @@ impl Row for CorrelationRow {
     const VERSION: u32 = 1;
 }
 
-/// One-sided power spectral density: its integral over positive wavenumbers (rad/m) is the mean
-/// square height.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SpectrumRow {
-    /// Name of the window, or `average` over all windows.
-    pub scan: String,
-    /// Mean wavenumber q = 2 π / λ of the bin.
-    #[schemars(extend("unit" = "rad/mm"))]
-    pub wavenumber_rad_mm: f64,
-    /// Mean power spectral density of the bin; from gappy scans single values can be negative.
-    #[schemars(extend("unit" = "mm^3"))]
-    pub density_mm3: f64,
-    /// Frequencies in the bin.
-    pub frequencies: u64,
-    /// `periodogram none`, `periodogram hann`, `blackman-tukey`, or a list where windows differ.
-    pub route: String,
-}
-
-impl Row for SpectrumRow {
-    const SCHEMA: &'static str = "asperity.characterise.spectrum";
-    const VERSION: u32 = 1;
-}
-
 /// Self-affine fit of the correlation (3.3.2-3).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SelfAffineRow {
@@ -283,6 +288,9 @@ pub fn schemas() -> Vec<SchemaVersion> {
         schema_of::<AverageRow>(),
         schema_of::<CorrelationRow>(),
         schema_of::<SpectrumRow>(),
+        schema_of::<IsotropicRow>(),
+        schema_of::<HurstRow>(),
+        schema_of::<AgreementRow>(),
         schema_of::<SelfAffineRow>(),
         schema_of::<ProfileRow>(),
         schema_of::<DepthRow>(),
@@ -309,11 +317,7 @@ pub fn run(
     let correlations = correlate_scans(&windows, longest_lag)?;
     let average = HeightDifferenceCorrelation::average(&correlations)?;
     context.check_interrupt()?;
-    let window = match parameters.spectrum_window {
-        SpectrumWindow::None => Window::None,
-        SpectrumWindow::Hann => Window::Hann,
-    };
-    let spectra = power_spectra(&windows, &correlations, window)?;
+    let spectra = power_spectra(&windows, &correlations, parameters.spectrum_window)?;
     let mean_spectrum = PowerSpectrum::average(&spectra)?;
 
     let names: Vec<&str> = windows.iter().map(|window| window.name.as_str()).collect();
@@ -328,14 +332,15 @@ pub fn run(
         .zip(correlations.iter().chain([&average]))
         .flat_map(|(name, c)| correlation_rows(name, c, parameters.lags_per_decade))
         .collect();
-    let metadata = Metadata::from([(WINDOW_LENGTH_KEY.to_owned(), shortest_window_mm(&windows))]);
+    let reliable = parameters.probe().shortest_reliable_wavelength(&average);
+    let cut_off = (RELIABLE_KEY.to_owned(), (reliable * 1e3).to_string());
+    let window_length = (WINDOW_LENGTH_KEY.to_owned(), shortest_window_mm(&windows));
+    let metadata = Metadata::from([window_length, cut_off.clone()]);
     context.pending.write_table(CORRELATION_FILE, &rows, &metadata)?;
-    let bins = parameters.spectrum_bins_per_decade;
-    let rows: Vec<_> = with_average()
-        .zip(spectra.iter().chain([&mean_spectrum]))
-        .flat_map(|(name, spectrum)| spectrum_rows(name, spectrum, bins))
-        .collect();
-    context.pending.write_table(SPECTRUM_FILE, &rows, &none)?;
+    let spectrum_rows = spectrum::spectrum_rows(parameters, &names, &spectra)?;
+    let mut metadata = spectrum::conventions(parameters);
+    metadata.extend([cut_off]);
+    context.pending.write_table(SPECTRUM_FILE, &spectrum_rows, &metadata)?;
     context.check_interrupt()?;
     let rows = standards::profile_rows(parameters, &windows);
     context.pending.write_table(PROFILE_FILE, &rows, &none)?;
@@ -343,8 +348,18 @@ pub fn run(
     context.pending.write_table(DEPTH_FILE, &rows, &none)?;
     let rows = standards::texture_rows(&names, &spectra, &mean_spectrum);
     context.pending.write_table(TEXTURE_FILE, &rows, &none)?;
-    let (rows, warnings) = self_affine(parameters, &names, &correlations)?;
+    let (rows, mut warnings) = self_affine(parameters, &names, &correlations)?;
     context.pending.write_table(SELF_AFFINE_FILE, &rows, &none)?;
+    let shortest_lag_mm = parameters.self_affine_shortest_lag_mm.unwrap_or(average.spacing * 1e3);
+    let (hurst, missing) =
+        spectrum::hurst_rows(parameters, &names, &spectra, &rows, reliable, shortest_lag_mm);
+    context.pending.write_table(HURST_FILE, &hurst, &none)?;
+    let rows = spectrum::isotropic_rows(&spectrum_rows, &hurst);
+    context.pending.write_table(ISOTROPIC_FILE, &rows, &none)?;
+    let (rows, metadata, apart) =
+        spectrum::agreement_rows(&mean_spectrum, &average, reliable, parameters.lags_per_decade);
+    context.pending.write_table(AGREEMENT_FILE, &rows, &metadata)?;
+    warnings.extend(missing.into_iter().chain(apart));
     Ok(warnings)
 }
 
@@ -408,29 +423,6 @@ fn correlation_rows(
         pairs: sample.pairs,
     };
     samples.into_iter().map(row).collect()
-}
-
-fn spectrum_rows(scan: &str, spectrum: &PowerSpectrum, per_decade: usize) -> Vec<SpectrumRow> {
-    let mut routes: Vec<&str> = spectrum.routes.iter().map(route_name).collect();
-    routes.sort_unstable();
-    routes.dedup();
-    let route = routes.join(", ");
-    let row = |bin: crate::surface::spectrum::SpectrumBin| SpectrumRow {
-        scan: scan.to_owned(),
-        wavenumber_rad_mm: bin.wavenumber / 1e3,
-        density_mm3: bin.density * 1e9,
-        frequencies: bin.count as u64,
-        route: route.clone(),
-    };
-    spectrum.log_binned(per_decade).into_iter().map(row).collect()
-}
-
-fn route_name(route: &Route) -> &'static str {
-    match route {
-        Route::Periodogram(Window::None) => "periodogram none",
-        Route::Periodogram(Window::Hann) => "periodogram hann",
-        Route::BlackmanTukey { .. } => "blackman-tukey",
-    }
 }
 
 fn self_affine(

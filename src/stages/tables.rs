@@ -3,7 +3,9 @@
 mod models;
 mod theories;
 
+use super::approximate::{ScaleRow, WAVES_FILE};
 use super::bem::{CURVES_FILE, CurveRow};
+use super::characterise::RELIABLE_KEY;
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
 use super::{Context, StageError, schema_of};
@@ -20,7 +22,7 @@ use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -149,11 +151,16 @@ pub struct FrictionRow {
     /// Mean pressure averaged over the realisations.
     #[schemars(extend("unit" = "MPa"))]
     pub pressure_mpa: f64,
+    /// Shortest wavelength that the scans show as it is: two spacings, or what spot or tip of the
+    /// instrument resolve; absent where the recipe states the waves. Friction of shorter waves
+    /// rests on no measurement.
+    #[schemars(extend("unit" = "mm"))]
+    pub shortest_reliable_wavelength_mm: Option<f64>,
 }
 
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
@@ -252,6 +259,9 @@ pub fn run(
         }
         context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
     }
+    let (_, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
+    let reliable = metadata.get(RELIABLE_KEY).and_then(|mm| mm.parse::<f64>().ok());
+    rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
     if models.hybrid || models.fem || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
@@ -396,6 +406,7 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
         confidence_95: present(estimate.confidence_95),
         interpolation_error: curves.iter().map(|c| c.interpolation_error).fold(0.0, f64::max),
         pressure_mpa: curves.iter().map(|c| c.pressure_mpa).sum::<f64>() / curves.len() as f64,
+        shortest_reliable_wavelength_mm: None,
     }
 }
 

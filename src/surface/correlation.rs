@@ -6,7 +6,12 @@
 //!
 //! With `m` the mask of valid points and `y = m z`, the sum over pairs at lag `k` is
 //! `sum_i m_i m_(i+k) (z_i - z_(i+k))^2`: three cyclic correlations of zero-padded sequences, so
-//! gaps need no filling and all lags cost five real FFTs.
+//! gaps need no filling and all lags cost five real FFTs. Without gaps, running sums of squares and
+//! two FFTs do.
+
+mod reliability;
+
+pub use reliability::{Probe, WAVELENGTHS_PER_SPOT};
 
 use super::LineScan;
 use rayon::prelude::*;
@@ -198,7 +203,10 @@ impl CorrelationPlan {
             return Err(CorrelationError::TooFewHeights { scan: scan.name.clone(), valid });
         }
         let (deviations, variance) = about_the_mean(heights, valid);
-        let (mut values, mut pairs) = self.all_lags(&deviations);
+        let (mut values, mut pairs) = match valid == heights.len() {
+            true => self.complete_lags(&deviations),
+            false => self.all_lags(&deviations),
+        };
         let longest = self.maximum_lag.min(heights.len() - 1);
         values.truncate(longest + 1);
         pairs.truncate(longest + 1);
@@ -206,6 +214,27 @@ impl CorrelationPlan {
             *value = direct_value(&deviations, lag);
         }
         Ok(HeightDifferenceCorrelation { spacing: scan.spacing, variance, values, pairs })
+    }
+
+    /// C and the number of pairs without gaps: `sum of z_i^2 + z_(i+k)^2` loses a height at either end
+    /// from one lag to the next, so that the transform of the heights alone is left.
+    fn complete_lags(&self, heights: &[f64]) -> (Vec<f64>, Vec<u64>) {
+        let points = heights.len();
+        let transform = self.spectrum(heights, |z| z);
+        let products = self.even_sequence(transform.iter().map(Complex::norm_sqr).collect());
+        // Compensated, as many small subtractions would cost digits of the small differences.
+        let (mut squares, mut lost) = (2.0 * products[0], 0.0);
+        let mut values = Vec::with_capacity(points);
+        for (lag, product) in products.iter().enumerate().take(points.min(self.maximum_lag + 1)) {
+            let sum = squares - 2.0 * product + lost;
+            values.push((sum / (points - lag) as f64).max(0.0));
+            let ends = heights[lag].powi(2) + heights[points - 1 - lag].powi(2);
+            let rest = squares - ends;
+            lost += squares - rest - ends;
+            squares = rest;
+        }
+        let pairs = (0..values.len()).map(|lag| (points - lag) as u64).collect();
+        (values, pairs)
     }
 
     /// C and the number of pairs from the spectra M, Y and W of `m`, `m z` and `m z^2`.

@@ -44,6 +44,8 @@ pub struct UndeterminedWavelength {
 pub enum WavelengthLimit {
     /// Not below two sample spacings.
     TwoSamples(f64),
+    /// Not below what the spot or tip of the instrument shows as it is.
+    Instrument(f64),
     /// Not above half a window.
     HalfWindow(f64),
 }
@@ -58,6 +60,13 @@ impl fmt::Display for UndeterminedWavelength {
         match self.limit {
             WavelengthLimit::TwoSamples(limit) => {
                 write!(formatter, "below two sample spacings ({:.6} mm)", limit * 1e3)?;
+            }
+            WavelengthLimit::Instrument(limit) => {
+                let limit_mm = limit * 1e3;
+                write!(
+                    formatter,
+                    "below the shortest reliable wavelength of the instrument ({limit_mm:.6} mm)"
+                )?;
             }
             WavelengthLimit::HalfWindow(limit) => {
                 write!(formatter, "above half the window ({:.6} mm)", limit * 1e3)?;
@@ -84,15 +93,15 @@ pub enum LadderError {
     },
     /// Every wave is beyond the limits.
     #[error(
-        "none of the {waves} wavelengths from {shortest} m lies between two spacings ({two_samples} m) and half a window ({half_window} m); move the ladder or keep undetermined waves"
+        "none of the {waves} wavelengths from {shortest} m lies between the shortest reliable one ({shortest_reliable} m) and half a window ({half_window} m); move the ladder or keep undetermined waves"
     )]
     NothingDetermined {
         /// Number of waves.
         waves: usize,
         /// The shortest wavelength in metres.
         shortest: f64,
-        /// Two sample spacings in metres.
-        two_samples: f64,
+        /// The shortest reliable wavelength in metres, two spacings or more.
+        shortest_reliable: f64,
         /// Half the window in metres.
         half_window: f64,
     },
@@ -125,8 +134,9 @@ impl Ladder {
     }
 
     /// The wavelengths to fit, and a warning for each one that scans of this spacing and window
-    /// length (metres) do not determine: below two spacings nothing is sampled, above half a
-    /// window the lag of half a wave has fewer than three independent pairs.
+    /// length (metres) do not determine: below two spacings nothing is sampled, below the
+    /// `shortest_reliable` wavelength (metres) the spot or tip of the instrument shows it changed,
+    /// above half a window the lag of half a wave has fewer than three independent pairs.
     ///
     /// # Errors
     /// No wavelength is left.
@@ -134,12 +144,15 @@ impl Ladder {
         &self,
         spacing: f64,
         window_length: f64,
+        shortest_reliable: f64,
         policy: Undetermined,
     ) -> Result<(Vec<f64>, Vec<UndeterminedWavelength>), LadderError> {
         let (two_samples, half_window) = (2.0 * spacing, window_length / 2.0);
         let limit = |wavelength: f64| {
             if wavelength < two_samples * (1.0 - ROUND_OFF) {
                 Some(WavelengthLimit::TwoSamples(two_samples))
+            } else if wavelength < shortest_reliable * (1.0 - ROUND_OFF) {
+                Some(WavelengthLimit::Instrument(shortest_reliable))
             } else if wavelength > half_window * (1.0 + ROUND_OFF) {
                 Some(WavelengthLimit::HalfWindow(half_window))
             } else {
@@ -158,7 +171,7 @@ impl Ladder {
             return Err(LadderError::NothingDetermined {
                 waves,
                 shortest,
-                two_samples,
+                shortest_reliable: shortest_reliable.max(two_samples),
                 half_window,
             });
         }
@@ -180,7 +193,8 @@ mod tests {
     #[test]
     fn undetermined_waves_are_dropped_or_kept_and_always_named() {
         let ladder = Ladder::new(Some(1e-5), 1e-5, 5).unwrap();
-        let (wavelengths, warnings) = ladder.for_scans(1e-5, 1.6e-4, Undetermined::Drop).unwrap();
+        let (wavelengths, warnings) =
+            ladder.for_scans(1e-5, 1.6e-4, 0.0, Undetermined::Drop).unwrap();
         assert_eq!(wavelengths, [2e-5, 4e-5, 8e-5]);
         let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         assert_eq!(
@@ -192,8 +206,23 @@ mod tests {
                  (0.080000 mm); left out"
             ]
         );
-        let (wavelengths, warnings) = ladder.for_scans(1e-5, 1.6e-4, Undetermined::Keep).unwrap();
+        let (wavelengths, warnings) =
+            ladder.for_scans(1e-5, 1.6e-4, 0.0, Undetermined::Keep).unwrap();
         assert_eq!((wavelengths.len(), warnings.len()), (5, 2));
+    }
+
+    #[test]
+    fn waves_that_the_instrument_blurs_are_left_out() {
+        let ladder = Ladder::new(Some(2e-5), 1e-5, 4).unwrap();
+        let (wavelengths, warnings) =
+            ladder.for_scans(1e-5, 1e-3, 8e-5, Undetermined::Drop).unwrap();
+        assert_eq!(wavelengths, [8e-5, 16e-5]);
+        assert_eq!(warnings[1].limit, WavelengthLimit::Instrument(8e-5));
+        assert_eq!(
+            warnings[1].to_string(),
+            "wavelength 0.040000 mm is not determined by the scan: it is below the shortest \
+             reliable wavelength of the instrument (0.080000 mm); left out"
+        );
     }
 
     #[test]
@@ -202,7 +231,7 @@ mod tests {
         assert!(matches!(Ladder::new(Some(-1.0), 1e-5, 8), Err(LadderError::NotPositive { .. })));
         assert!(Ladder::new(Some(f64::NAN), 1e-5, 8).is_err());
         let short = Ladder::new(Some(1e-6), 1e-5, 2).unwrap();
-        let none = short.for_scans(1e-5, 1.0, Undetermined::Drop).unwrap_err();
+        let none = short.for_scans(1e-5, 1.0, 0.0, Undetermined::Drop).unwrap_err();
         assert!(matches!(none, LadderError::NothingDetermined { waves: 2, .. }));
     }
 }

@@ -12,7 +12,7 @@ use super::correlation::{
     CorrelationError, CorrelationSample, HeightDifferenceCorrelation, check_equal_spacing,
     log_spaced_lags, pooled_value,
 };
-use crate::numerics::statistics::student_t_975;
+use crate::numerics::statistics::jackknife_95;
 use thiserror::Error;
 
 /// Fewest lags on the slope, and in all: two would meet any slope exactly.
@@ -185,15 +185,11 @@ fn pooled(
     lags.iter().map(at).filter(|sample| sample.pairs > 0).collect()
 }
 
-/// Half widths of the 95 % intervals from the estimates without one scan each:
-/// `t sqrt((n - 1)/n sum (theta_i - mean)^2)`.
+/// Half widths of the 95 % intervals from the estimates without one scan each.
 fn jackknife(fits: &[Hinge]) -> [f64; 3] {
-    let n = fits.len() as f64;
     let estimates: Vec<[f64; 3]> = fits.iter().map(Hinge::parameters).collect();
     std::array::from_fn(|which| {
-        let mean = estimates.iter().map(|e| e[which]).sum::<f64>() / n;
-        let squares = estimates.iter().map(|e| (e[which] - mean).powi(2)).sum::<f64>();
-        student_t_975(n - 1.0) * ((n - 1.0) / n * squares).sqrt()
+        jackknife_95(&estimates.iter().map(|e| e[which]).collect::<Vec<_>>())
     })
 }
 
@@ -261,7 +257,7 @@ impl Hinge {
 }
 
 /// Intercept and slope of the least-squares line.
-fn line(x: &[f64], y: &[f64]) -> (f64, f64) {
+pub(super) fn line(x: &[f64], y: &[f64]) -> (f64, f64) {
     let n = x.len() as f64;
     let (mean_x, mean_y) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
     let xx: f64 = x.iter().map(|x| (x - mean_x).powi(2)).sum();

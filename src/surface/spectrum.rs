@@ -6,33 +6,33 @@
 //! sum over k of C1D(q_k) dq = mean of z^2,    q_k = k dq,  dq = 2 π / (N spacing),  k = 0 ... N/2
 //! ```
 //!
-//! to round-off without a window. Half of it is the two-sided density of Persson's formulae. The
+//! to round-off without a window, and with one for the weighted heights (see [`Window`]). Half of it is the two-sided density of Persson's formulae. The
 //! heights are taken about the mean line: what is left of a mean stands at `q = 0`.
+
+mod agreement;
+mod bins;
+mod hurst;
+mod isotropic;
+mod window;
+
+pub use agreement::{Agreement, LENGTHS_PER_LAG, agreement};
+pub use bins::SpectrumBin;
+pub use hurst::{HurstError, SpectralHurst, fit_hurst_exponent};
+pub use isotropic::{IsotropicError, abel_inverse, self_affine_isotropic};
+pub use window::Window;
 
 use super::{HeightDifferenceCorrelation, LineScan};
 use rayon::prelude::*;
 use realfft::{RealFftPlanner, RealToComplex};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 use thiserror::Error;
 
 /// Lags of the Blackman-Tukey route for a share of the points of a scan, one in so many. The usual
 /// compromise: longer lags have too few independent pairs, shorter ones blur long waves.
 const POINTS_PER_LAG: usize = 10;
-
-/// Window on the heights of a complete scan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Window {
-    /// None: Parseval is exact, but the step between the ends of the scan leaks like `1/q^2`.
-    None,
-    /// `w = (1 - cos(2 π i / N)) / 2`, the power divided by its mean square 3/8.
-    #[default]
-    Hann,
-}
 
 /// How a spectrum was obtained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,6 +49,17 @@ pub enum Route {
     },
 }
 
+impl Route {
+    /// Share of the autocovariance at a lag that the spectrum keeps; the lag as a share of the scan
+    /// and as a number of spacings.
+    fn kept_autocovariance(self, share: f64, spacings: f64) -> f64 {
+        match self {
+            Self::Periodogram(window) => window.autocorrelation(share),
+            Self::BlackmanTukey { maximum_lag } => parzen((spacings / maximum_lag as f64).min(1.0)),
+        }
+    }
+}
+
 /// One-sided power spectral density, see the [module](self) for its normalisation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PowerSpectrum {
@@ -58,18 +69,6 @@ pub struct PowerSpectrum {
     pub density: Vec<f64>,
     /// The route taken, one entry for each scan behind the spectrum.
     pub routes: Vec<Route>,
-}
-
-/// Mean density over one bin of wavenumbers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct SpectrumBin {
-    /// Geometric mean in rad/m of the wavenumbers in the bin.
-    pub wavenumber: f64,
-    /// Arithmetic mean in m³ of the densities in the bin; where the spectrum falls like `q^-n`
-    /// it exceeds the density at `wavenumber`, at 20 bins a decade and n = 3 by less than 1 %.
-    pub density: f64,
-    /// Number of wavenumbers in the bin.
-    pub count: usize,
 }
 
 /// A spectrum that cannot be computed.
@@ -165,7 +164,7 @@ impl SpectrumPlan {
             return Err(SpectrumError::Gaps { scan: scan.name.clone(), missing });
         }
         let mut input = scan.heights.clone();
-        let mean_square = apply(window, &mut input);
+        let mean_square = window.apply(&mut input);
         let step = TAU / scan.length();
         let mut output = self.forward.make_output_vec();
         self.forward.process(&mut input, &mut output).expect("buffers come from the plan");
@@ -228,11 +227,8 @@ impl PowerSpectrum {
         k as f64 * self.wavenumber_step
     }
 
-    /// Mean over scans, entry by entry.
-    ///
-    /// # Errors
-    /// No spectra, or different wavenumbers.
-    pub fn average(spectra: &[Self]) -> Result<Self, SpectrumError> {
+    /// The first of some spectra, if all are on its wavenumbers.
+    fn check_equal_grids(spectra: &[Self]) -> Result<&Self, SpectrumError> {
         let first = spectra.first().ok_or(SpectrumError::Empty)?;
         let (count, step) = (first.density.len(), first.wavenumber_step);
         let differs =
@@ -240,26 +236,20 @@ impl PowerSpectrum {
         if let Some(other) = spectra.iter().find(differs) {
             return Err(SpectrumError::UnequalGrids { first: count, other: other.density.len() });
         }
+        Ok(first)
+    }
+
+    /// Mean over scans, entry by entry.
+    ///
+    /// # Errors
+    /// No spectra, or different wavenumbers.
+    pub fn average(spectra: &[Self]) -> Result<Self, SpectrumError> {
+        let first = Self::check_equal_grids(spectra)?;
+        let (count, step) = (first.density.len(), first.wavenumber_step);
         let mean = |k: usize| spectra.iter().map(|s| s.density[k]).sum::<f64>();
         let density = (0..count).map(|k| mean(k) / spectra.len() as f64).collect();
         let routes = spectra.iter().flat_map(|s| s.routes.iter().copied()).collect();
         Ok(Self { wavenumber_step: step, density, routes })
-    }
-
-    /// Means over bins of equal width in `log q`, `per_decade` a decade, with edges at
-    /// `10^(j / per_decade)` rad/m whatever the scan; `q = 0` and empty bins are left out.
-    pub fn log_binned(&self, per_decade: usize) -> Vec<SpectrumBin> {
-        let bin = |k: usize| (self.wavenumber(k).log10() * per_decade as f64).floor() as i64;
-        let indices: Vec<usize> = (1..self.density.len()).collect();
-        let members = indices.chunk_by(|&a, &b| bin(a) == bin(b));
-        members.map(|bin| self.bin_mean(bin)).collect()
-    }
-
-    fn bin_mean(&self, members: &[usize]) -> SpectrumBin {
-        let count = members.len() as f64;
-        let logarithm = members.iter().map(|&k| self.wavenumber(k).ln()).sum::<f64>() / count;
-        let density = members.iter().map(|&k| self.density[k]).sum::<f64>() / count;
-        SpectrumBin { wavenumber: logarithm.exp(), density, count: members.len() }
     }
 }
 
@@ -292,17 +282,6 @@ pub fn power_spectra(
         }
     };
     scans.par_iter().zip(correlations).map(spectrum).collect()
-}
-
-/// Multiply heights by a window and return the mean square of the window.
-fn apply(window: Window, heights: &mut [f64]) -> f64 {
-    if window == Window::None {
-        return 1.0;
-    }
-    let step = PI / heights.len() as f64;
-    // (1 - cos 2a) / 2 = sin^2 a
-    heights.iter_mut().enumerate().for_each(|(i, z)| *z *= (step * i as f64).sin().powi(2));
-    0.375
 }
 
 /// Parzen's lag window at `0 <= u <= 1`; its spectral window is nowhere negative.

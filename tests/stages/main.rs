@@ -11,6 +11,7 @@ mod golden;
 mod hybrid;
 mod instrument_files;
 mod interruption;
+mod reliability;
 mod scans;
 mod schemas;
 mod sinusoid;

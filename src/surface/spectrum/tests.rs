@@ -3,6 +3,7 @@ use crate::surface::correlation::CorrelationPlan;
 use approx::assert_relative_eq;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::f64::consts::PI;
 
 const SPACING: f64 = 1e-5;
 
@@ -123,4 +124,149 @@ fn impossible_input_is_an_error() {
     assert_eq!(hole, SpectrumError::NoPairs { lag: 40 });
     assert!(matches!(SpectrumPlan::new(1), Err(SpectrumError::Empty)));
     assert_eq!(PowerSpectrum::average(&[]), Err(SpectrumError::Empty));
+}
+
+#[test]
+fn parseval_holds_for_the_weighted_heights_under_every_window() {
+    for window in [Window::None, Window::Hann, Window::Welch] {
+        for points in [2, 3, 4000, 4001] {
+            let scan = noise(points, 6);
+            let spectrum = SpectrumPlan::new(points).unwrap().periodogram(&scan, window).unwrap();
+            let (mut weighted, mut weights) = (scan.heights.clone(), vec![1.0; points]);
+            window.apply(&mut weighted);
+            window.apply(&mut weights);
+            let squares = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+            let expected = squares(&weighted) / squares(&weights);
+            assert_relative_eq!(power(&spectrum), expected, max_relative = 1e-12);
+        }
+    }
+}
+
+/// Normal heights, independent of each other, by Box and Muller.
+fn normal_noise(points: usize, seed: u64) -> LineScan {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let mut scan = noise(points, seed);
+    scan.heights.fill_with(|| {
+        let (u, v): (f64, f64) = (generator.random(), generator.random());
+        (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
+    });
+    scan
+}
+
+#[test]
+fn the_geometric_mean_is_freed_of_its_bias_and_errors_are_as_large_as_they_say() {
+    let (points, scans) = (2000, 200);
+    let plan = SpectrumPlan::new(points).unwrap();
+    let white = SPACING / PI;
+    for window in [Window::None, Window::Hann, Window::Welch] {
+        let spectra: Vec<PowerSpectrum> = (0..scans)
+            .map(|seed| plan.periodogram(&normal_noise(points, seed), window).unwrap())
+            .collect();
+        let bins = PowerSpectrum::log_binned_over(&spectra, 5).unwrap();
+        // exp(-γ) in every table.
+        assert_relative_eq!(bins[0].geometric_bias, 0.561_459_483_566_885, max_relative = 1e-12);
+        for (i, bin) in bins.iter().enumerate().skip(5).filter(|(_, bin)| bin.count > 30) {
+            // Some 200 x 30 / 1.9 values at least, standard deviation 1 of one of them and
+            // π/sqrt(6) = 1.28 of its logarithm: 2.3 %, four times that.
+            assert_relative_eq!(bin.density, white, max_relative = 0.08);
+            assert_relative_eq!(bin.geometric_density.unwrap(), white, max_relative = 0.1);
+            // The spread of 200 scans is known to 5 %, four times that.
+            let one = spectra[0].log_binned(5)[i];
+            let of_one = one.standard_error / one.density * bin.density;
+            let of_all = bin.standard_error * f64::from(scans as u32).sqrt();
+            assert_relative_eq!(of_one, of_all, max_relative = 0.2);
+        }
+    }
+}
+
+#[test]
+fn the_mean_over_scans_is_that_of_their_average() {
+    let plan = SpectrumPlan::new(900).unwrap();
+    let spectra: Vec<PowerSpectrum> =
+        (0..3).map(|seed| plan.periodogram(&noise(900, seed), Window::Welch).unwrap()).collect();
+    let over = PowerSpectrum::log_binned_over(&spectra, 10).unwrap();
+    let average = PowerSpectrum::average(&spectra).unwrap().log_binned(10);
+    assert_eq!(over.len(), average.len());
+    for (a, b) in over.iter().zip(&average) {
+        assert_eq!((a.wavenumber, a.count), (b.wavenumber, b.count));
+        assert_relative_eq!(a.density, b.density, max_relative = 1e-12);
+    }
+    assert_eq!(PowerSpectrum::log_binned_over(&[], 10), Err(SpectrumError::Empty));
+}
+
+#[test]
+fn the_slope_of_a_power_law_is_its_hurst_exponent() {
+    let law = |k: usize| if k == 0 { 0.0 } else { (k as f64).powf(-2.4) };
+    let one = |factor: f64| PowerSpectrum {
+        wavenumber_step: 10.0,
+        density: (0..20_000).map(|k| factor * law(k)).collect(),
+        routes: vec![Route::Periodogram(Window::None)],
+    };
+    let spectra = [one(1.0), one(2.0), one(5.0)];
+    let fit = fit_hurst_exponent(&spectra, 10, 1e-4, 1e-2).unwrap();
+    assert!(fit.shortest_wavelength >= 1e-4 && fit.longest_wavelength <= 1e-2);
+    // Bins of few wavenumbers: their mean over a power law is not that at their middle, and the
+    // bias taken off belongs to scatter that a power law does not have; both some per cent of a
+    // density over two decades.
+    assert_relative_eq!(fit.hurst_exponent, 0.7, epsilon = 5e-3);
+    // All scans have one slope.
+    let interval = fit.hurst_exponent_95.unwrap();
+    assert!(interval.upper - interval.lower < 1e-9);
+    assert_eq!(fit_hurst_exponent(&spectra[..1], 10, 1e-4, 1e-2).unwrap().hurst_exponent_95, None);
+    let narrow = fit_hurst_exponent(&spectra, 10, 1e-3, 1.3e-3).unwrap_err();
+    assert!(matches!(narrow, HurstError::TooFewBins { bins: 1 | 2, .. }));
+}
+
+#[test]
+fn spectrum_and_correlation_agree_where_both_are_exact() {
+    let (points, periods) = (4000, 40);
+    let mut scan = noise(points, 1);
+    let step = TAU * f64::from(periods) / points as f64;
+    scan.heights = (0..points).map(|i| 2e-4 * (step * i as f64).sin()).collect();
+    let correlation = correlate(&scan, points / 2);
+    let plan = SpectrumPlan::new(points).unwrap();
+    // Whole waves: the wrap-around that r(s) takes off is not there, so it must be left in.
+    let spectrum = plan.periodogram(&scan, Window::None).unwrap();
+    for lag in [0_usize, 1, 30, 50, 170] {
+        let from_spectrum =
+            2.0 * (spectrum.autocovariance(0.0) - spectrum.autocovariance(lag as f64 * SPACING));
+        // Round-off is that of 4000 rotations.
+        let exact = 2.0 * 2e-4_f64.powi(2) * (step * lag as f64 / 2.0).sin().powi(2);
+        assert_relative_eq!(from_spectrum, exact, epsilon = 1e-10 * 2e-4_f64.powi(2));
+    }
+    // Windows that fall to zero at the ends: an error of the order of the leakage.
+    for window in [Window::Hann, Window::Welch] {
+        let spectrum = plan.periodogram(&scan, window).unwrap();
+        let compared = agreement(&spectrum, &correlation, SPACING, 20);
+        assert!(compared.last().unwrap().lag <= 0.05 * scan.length() * (1.0 + 1e-12));
+        let scale = 2.0 * 2e-4_f64.powi(2);
+        for Agreement { lag, correlation, from_spectrum } in compared {
+            let error = (from_spectrum - correlation).abs() / scale;
+            assert!(error < 0.02, "{window:?} {lag}: {correlation} {from_spectrum}");
+        }
+    }
+}
+
+#[test]
+fn the_window_of_either_route_is_divided_out() {
+    // A moving average of white noise, of which the correlation is known to rise over ten lags.
+    let points = 40_000;
+    let white = normal_noise(points + 10, 9).heights;
+    let mut scan = noise(points, 9);
+    scan.heights = (0..points).map(|i| white[i..i + 10].iter().sum::<f64>()).collect();
+    let correlation = correlate(&scan, points / 2);
+    let plan = SpectrumPlan::new(points).unwrap();
+    let spectra = [
+        plan.periodogram(&scan, Window::None).unwrap(),
+        plan.periodogram(&scan, Window::Hann).unwrap(),
+        plan.periodogram(&scan, Window::Welch).unwrap(),
+        plan.blackman_tukey(&correlation, points / 10).unwrap(),
+    ];
+    for spectrum in spectra {
+        for compared in agreement(&spectrum, &correlation, SPACING, 10) {
+            // 4000 independent heights: mean squares by two windows differ by some 3 %, thrice that.
+            let difference = compared.relative_difference();
+            assert!(difference.abs() < 0.1, "{:?} {compared:?}", spectrum.routes);
+        }
+    }
 }
