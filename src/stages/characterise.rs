@@ -8,7 +8,9 @@ pub use spectrum::{
     AGREEMENT_FILE, AgreementRow, HURST_FILE, HurstRow, ISOTROPIC_FILE, IsotropicRow,
     LARGEST_DIFFERENCE_KEY, SPECTRUM_FILE, SpectrumRow,
 };
-pub use standards::{DEPTH_FILE, DepthRow, PROFILE_FILE, ProfileRow, TEXTURE_FILE, TextureRow};
+pub use standards::{
+    DEPTH_FILE, DepthRow, PROFILE_FILE, ProfileDepth, ProfileRow, TEXTURE_FILE, TextureRow,
+};
 
 use super::ingest::read_windows;
 use super::{Context, StageError, schema_of};
@@ -79,9 +81,8 @@ pub struct Characterise {
     pub section_length_mm: Option<f64>,
     /// Which parameters are means over sections: `iso21920` or `iso4287`.
     pub profile_standard: ProfileStandard,
-    /// Whether the mean profile depth uses the high-pass filter of 174.2 mm, for windows that are
-    /// long against it, in place of slope suppression in each segment.
-    pub profile_depth_high_pass: bool,
+    /// The mean profile depth of ISO 13473-1.
+    pub profile_depth: ProfileDepth,
 }
 
 impl Default for Characterise {
@@ -102,7 +103,7 @@ impl Default for Characterise {
             profile_filter: ProfileFilter::Gaussian,
             section_length_mm: None,
             profile_standard: ProfileStandard::Iso21920,
-            profile_depth_high_pass: false,
+            profile_depth: ProfileDepth::default(),
         }
     }
 }
@@ -129,7 +130,7 @@ impl Characterise {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
             demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
-        Ok(())
+        self.profile_depth.check()
     }
 
     fn probe(&self) -> Probe {

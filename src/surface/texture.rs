@@ -4,16 +4,34 @@ use super::form::{Form, remove_form};
 use super::spectrum::PowerSpectrum;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
-/// Length in metres of the segments of the mean profile depth.
-pub const SEGMENT: f64 = 0.1;
-/// Largest share of drop-outs in a segment.
-pub const MOST_DROP_OUTS: f64 = 0.1;
-/// Slope between neighbouring points at which a height is a spike by ISO 13473-1.
-pub const SPIKE_SLOPE: f64 = 3.0;
-/// Cut-off in metres of the low-pass filter, applied forwards and backwards: -3 dB at 3 mm.
-pub const LOW_PASS: f64 = 2.4e-3;
-/// Cut-off in metres of the high-pass filter, applied forwards and backwards: -3 dB at 140 mm.
-pub const HIGH_PASS: f64 = 174.2e-3;
+/// What ISO 13473-1 leaves open or fixes by a number; the default is its usual choice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthOptions {
+    /// Length in metres of a segment.
+    pub segment: f64,
+    /// Largest share of drop-outs in a segment.
+    pub most_drop_outs: f64,
+    /// Slope to both neighbours at which a height is a spike.
+    pub spike_slope: f64,
+    /// Cut-off in metres of the low-pass filter, applied forwards and backwards: 2.4 mm are -3 dB
+    /// at 3 mm.
+    pub low_pass: f64,
+    /// Cut-off in metres of the high-pass filter, applied forwards and backwards: 174.2 mm are -3 dB
+    /// at 140 mm. Without it each segment loses its line (slope suppression).
+    pub high_pass: Option<f64>,
+}
+
+impl Default for DepthOptions {
+    fn default() -> Self {
+        Self {
+            segment: 0.1,
+            most_drop_outs: 0.1,
+            spike_slope: 3.0,
+            low_pass: 2.4e-3,
+            high_pass: None,
+        }
+    }
+}
 
 /// Mean profile depth of one segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,39 +40,43 @@ pub struct SegmentDepth {
     pub start: f64,
     /// Share of the points that were interpolated, drop-outs and spikes.
     pub interpolated: f64,
-    /// Mean of the peaks of both halves above the mean level, in metres; none where more than a
-    /// tenth of the points had no height.
+    /// Mean of the peaks of both halves above the mean level, in metres; none where too many of
+    /// the points had no height.
     pub depth: Option<f64>,
 }
 
-/// Mean profile depths of the whole 100 mm segments of equidistant heights (metres, NaN where
-/// missing), as ISO 13473-1 has it: spikes, steeper than 3 to their neighbour on the left and the
+/// Mean profile depths of the whole segments of equidistant heights (metres, NaN where
+/// missing), as ISO 13473-1 has it: spikes, too steep to their neighbours on the left and the
 /// right, become drop-outs; drop-outs are interpolated linearly; a Butterworth low-pass of second
-/// order, forwards and backwards; with `high_pass` a high-pass likewise, without it each segment
-/// loses its line (slope suppression).
-pub fn mean_profile_depths(heights: &[f64], spacing: f64, high_pass: bool) -> Vec<SegmentDepth> {
+/// order, forwards and backwards; a high-pass likewise, or the line of each segment taken off.
+pub fn mean_profile_depths(
+    heights: &[f64],
+    spacing: f64,
+    options: &DepthOptions,
+) -> Vec<SegmentDepth> {
     // A segment of a whole number of points must not lose one to round-off.
-    let points = (SEGMENT / spacing * (1.0 + 1e-9)).floor() as usize;
+    let points = (options.segment / spacing * (1.0 + 1e-9)).floor() as usize;
     if points < 4 || heights.len() < points {
         return Vec::new();
     }
     let mut valid = heights.to_vec();
-    drop_spikes(&mut valid, spacing);
+    drop_spikes(&mut valid, options.spike_slope * spacing);
     let Some(mut smooth) = interpolated(&valid) else { return Vec::new() };
     // Without a point per half cut-off there is nothing above it to take away.
-    if LOW_PASS > 2.0 * spacing {
-        smooth = both_ways(&smooth, &Butterworth::low_pass(spacing / LOW_PASS));
+    if options.low_pass > 2.0 * spacing {
+        smooth = both_ways(&smooth, &Butterworth::low_pass(spacing / options.low_pass));
     }
-    if high_pass {
-        smooth = both_ways(&smooth, &Butterworth::high_pass(spacing / HIGH_PASS));
+    if let Some(cut_off) = options.high_pass {
+        smooth = both_ways(&smooth, &Butterworth::high_pass(spacing / cut_off));
     }
     let segments = smooth.chunks_exact(points).zip(heights.chunks_exact(points));
     let depth = |(i, (segment, measured)): (usize, (&[f64], &[f64]))| {
         let missing = |z: &[f64]| z.iter().filter(|z| z.is_nan()).count() as f64 / points as f64;
         let interpolated = missing(&valid[i * points..(i + 1) * points]);
-        let judged = missing(measured) <= MOST_DROP_OUTS && interpolated <= MOST_DROP_OUTS;
+        let most = options.most_drop_outs;
+        let judged = missing(measured) <= most && interpolated <= most;
         let start = (i * points) as f64 * spacing;
-        let form = if high_pass { Form::Mean } else { Form::Slope };
+        let form = if options.high_pass.is_some() { Form::Mean } else { Form::Slope };
         SegmentDepth { start, interpolated, depth: judged.then(|| segment_depth(segment, form)) }
     };
     segments.enumerate().map(depth).collect()
@@ -71,8 +93,8 @@ fn segment_depth(segment: &[f64], form: Form) -> f64 {
     0.5 * (peak(first) + peak(second))
 }
 
-fn drop_spikes(heights: &mut [f64], spacing: f64) {
-    let limit = SPIKE_SLOPE * spacing;
+/// Heights that stick out by `limit` or more from both neighbours are no heights.
+fn drop_spikes(heights: &mut [f64], limit: f64) {
     let is_spike = |z: &[f64]| {
         let (left, right) = (z[1] - z[0], z[1] - z[2]);
         left.abs() >= limit && right.abs() >= limit && left * right > 0.0

@@ -2,9 +2,10 @@
 
 use super::{AVERAGE, Characterise};
 use crate::artifact::Row;
+use crate::recipe::{Violation, demand};
 use crate::surface::filter::waviness;
 use crate::surface::profile::{ProfileParameters, profile_parameters};
-use crate::surface::texture::{mean_profile_depths, texture_bands};
+use crate::surface::texture::{DepthOptions, mean_profile_depths, texture_bands};
 use crate::surface::{LineScan, PowerSpectrum};
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -12,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// Profile parameters of each window: `profile_parameters.arrow`.
 pub const PROFILE_FILE: &str = "profile_parameters.arrow";
-/// Mean profile depths of the 100 mm segments: `profile_depth.arrow`.
+/// Mean profile depths of the segments: `profile_depth.arrow`.
 pub const DEPTH_FILE: &str = "profile_depth.arrow";
 /// Texture levels in third-octave bands, per window and averaged: `texture.arrow`.
 pub const TEXTURE_FILE: &str = "texture.arrow";
@@ -20,6 +21,66 @@ pub const TEXTURE_FILE: &str = "texture.arrow";
 /// Sections in a window where the recipe gives neither their length nor a cut-off, as in the
 /// default evaluation length of the standards.
 const SECTIONS: usize = 5;
+
+/// The mean profile depth: what ISO 13473-1 leaves open or fixes by a number.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ProfileDepth {
+    /// Length of a segment in millimetres.
+    pub segment_mm: f64,
+    /// Largest share of drop-outs and spikes in a segment that counts.
+    pub most_drop_outs: f64,
+    /// Slope to both neighbours from which a height is a spike.
+    pub spike_slope: f64,
+    /// Cut-off in millimetres of the low-pass filter, applied forwards and backwards.
+    pub low_pass_mm: f64,
+    /// Cut-off in millimetres of the high-pass filter, usually 174.2, for windows that are long
+    /// against it; slope suppression in each segment if not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub high_pass_mm: Option<f64>,
+}
+
+impl Default for ProfileDepth {
+    fn default() -> Self {
+        let usual = DepthOptions::default();
+        Self {
+            // Round millimetres stay round.
+            segment_mm: 100.0,
+            most_drop_outs: usual.most_drop_outs,
+            spike_slope: usual.spike_slope,
+            low_pass_mm: 2.4,
+            high_pass_mm: usual.high_pass.map(|metres| metres * 1e3),
+        }
+    }
+}
+
+impl ProfileDepth {
+    pub(super) fn check(&self) -> Result<(), Violation> {
+        let share = self.most_drop_outs;
+        let key = "characterise.profile_depth.most_drop_outs";
+        demand((0.0..1.0).contains(&share), key, share, "from 0 to below 1")?;
+        for (key, value) in [
+            ("characterise.profile_depth.segment_mm", Some(self.segment_mm)),
+            ("characterise.profile_depth.spike_slope", Some(self.spike_slope)),
+            ("characterise.profile_depth.low_pass_mm", Some(self.low_pass_mm)),
+            ("characterise.profile_depth.high_pass_mm", self.high_pass_mm),
+        ] {
+            let positive = value.is_none_or(|x| x > 0.0 && x.is_finite());
+            demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
+        }
+        Ok(())
+    }
+
+    fn options(&self) -> DepthOptions {
+        DepthOptions {
+            segment: self.segment_mm / 1e3,
+            most_drop_outs: self.most_drop_outs,
+            spike_slope: self.spike_slope,
+            low_pass: self.low_pass_mm / 1e3,
+            high_pass: self.high_pass_mm.map(|mm| mm / 1e3),
+        }
+    }
+}
 
 /// Profile parameters of one window after ISO 21920-2 or ISO 4287, of the roughness profile that
 /// `lambda_s_mm` and `lambda_c_mm` leave.
@@ -70,7 +131,7 @@ impl Row for ProfileRow {
     const VERSION: u32 = 1;
 }
 
-/// Mean profile depth of one 100 mm segment after ISO 13473-1.
+/// Mean profile depth of one segment after ISO 13473-1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DepthRow {
     /// Name of the window.
@@ -81,7 +142,7 @@ pub struct DepthRow {
     /// Share of interpolated points, drop-outs and spikes.
     #[schemars(extend("unit" = "1"))]
     pub interpolated_share: f64,
-    /// Mean profile depth; absent where more than a tenth of the points was interpolated.
+    /// Mean profile depth; absent where too many points were interpolated.
     #[schemars(extend("unit" = "mm"))]
     pub depth_mm: Option<f64>,
 }
@@ -171,8 +232,8 @@ fn roughness(parameters: &Characterise, window: &LineScan) -> Vec<f64> {
 
 pub(super) fn depth_rows(parameters: &Characterise, windows: &[LineScan]) -> Vec<DepthRow> {
     let rows = |window: &LineScan| -> Vec<DepthRow> {
-        let high_pass = parameters.profile_depth_high_pass;
-        let depths = mean_profile_depths(&window.heights, window.spacing, high_pass);
+        let options = parameters.profile_depth.options();
+        let depths = mean_profile_depths(&window.heights, window.spacing, &options);
         let row = |segment: crate::surface::texture::SegmentDepth| DepthRow {
             scan: window.name.clone(),
             start_mm: segment.start * 1e3,

@@ -13,7 +13,7 @@ fn waves(amplitude: f64) -> Vec<f64> {
 fn the_depth_of_a_wave_is_its_amplitude_whatever_its_tilt() {
     let tilted =
         waves(1e-3).iter().enumerate().map(|(i, z)| z + 1e-5 * i as f64).collect::<Vec<_>>();
-    let depths = mean_profile_depths(&tilted, SPACING, false);
+    let depths = mean_profile_depths(&tilted, SPACING, &DepthOptions::default());
     assert_eq!(depths.len(), 5);
     for segment in &depths {
         // The low-pass takes (2.4/20)^4 = 2e-4, the crest lies half a point off (3e-3), and a
@@ -38,19 +38,40 @@ fn drop_outs_beyond_a_tenth_and_short_scans_have_no_depth() {
     let mut heights = waves(1e-3);
     heights[10..31].fill(f64::NAN);
     heights[200..220].fill(f64::NAN);
-    let depths = mean_profile_depths(&heights, SPACING, false);
+    let depths = mean_profile_depths(&heights, SPACING, &DepthOptions::default());
     assert_eq!((depths[0].depth, depths[0].interpolated), (None, 0.105));
     assert!(depths[1].depth.is_some());
-    assert!(mean_profile_depths(&heights[..100], SPACING, false).is_empty());
-    assert!(mean_profile_depths(&[f64::NAN; 400], SPACING, false).is_empty());
+    assert!(mean_profile_depths(&heights[..100], SPACING, &DepthOptions::default()).is_empty());
+    assert!(mean_profile_depths(&[f64::NAN; 400], SPACING, &DepthOptions::default()).is_empty());
+}
+
+#[test]
+fn the_choices_of_the_standard_can_be_made() {
+    let heights = waves(1e-3);
+    let usual = DepthOptions::default();
+    let depths = |options| mean_profile_depths(&heights, SPACING, &options);
+    let halved = DepthOptions { segment: 0.05, ..usual };
+    assert_eq!(depths(halved).len(), 2 * depths(usual).len());
+    // Nothing of a wave of 20 mm is left by a low-pass ten times as long.
+    let flat = depths(DepthOptions { low_pass: 0.2, ..usual });
+    assert!(flat[2].depth.unwrap() < 0.1e-3, "{flat:?}");
+    let high = depths(DepthOptions { high_pass: Some(2e-3), ..usual });
+    assert!(high[2].depth.unwrap() < 0.1e-3, "{high:?}");
+    let mut spiked = heights.clone();
+    spiked[100] += 9e-3;
+    let blunt = DepthOptions { spike_slope: 30.0, ..usual };
+    assert_eq!(mean_profile_depths(&spiked, SPACING, &blunt)[0].interpolated, 0.0);
+    spiked[110..120].fill(f64::NAN);
+    let strict = DepthOptions { most_drop_outs: 0.04, ..usual };
+    assert_eq!(mean_profile_depths(&spiked, SPACING, &strict)[0].depth, None);
 }
 
 #[test]
 fn spikes_are_interpolated() {
     let mut heights = waves(1e-3);
-    let clean = mean_profile_depths(&heights, SPACING, false);
+    let clean = mean_profile_depths(&heights, SPACING, &DepthOptions::default());
     heights[100] += 9e-3;
-    let spiked = mean_profile_depths(&heights, SPACING, false);
+    let spiked = mean_profile_depths(&heights, SPACING, &DepthOptions::default());
     assert_eq!(spiked[0].interpolated, 1.0 / 200.0);
     // A wave of 40 points is straight between neighbours to 1.2 %.
     approx::assert_relative_eq!(
@@ -75,12 +96,12 @@ fn the_filters_have_their_three_decibels_at_3_and_140_mm() {
         1.0 / (1.0 + (tangent(wavelength) / tangent(cutoff)).powi(4))
     };
     let spacing = 5e-5;
-    let found = crest(3e-3, &Butterworth::low_pass(spacing / LOW_PASS), spacing);
-    approx::assert_abs_diff_eq!(found, both(spacing, 3e-3, LOW_PASS), epsilon = 1e-9);
+    let found = crest(3e-3, &Butterworth::low_pass(spacing / 2.4e-3), spacing);
+    approx::assert_abs_diff_eq!(found, both(spacing, 3e-3, 2.4e-3), epsilon = 1e-9);
     approx::assert_abs_diff_eq!(found, 0.5_f64.sqrt(), epsilon = 3e-3);
     let spacing = 5e-4;
-    let found = crest(0.14, &Butterworth::high_pass(spacing / HIGH_PASS), spacing);
-    approx::assert_abs_diff_eq!(found, 1.0 - both(spacing, 0.14, HIGH_PASS), epsilon = 1e-9);
+    let found = crest(0.14, &Butterworth::high_pass(spacing / 0.1742), spacing);
+    approx::assert_abs_diff_eq!(found, 1.0 - both(spacing, 0.14, 0.1742), epsilon = 1e-9);
     approx::assert_abs_diff_eq!(found, 0.5_f64.sqrt(), epsilon = 3e-3);
 }
 
