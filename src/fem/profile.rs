@@ -44,27 +44,41 @@ impl RigidProfile {
     /// them. Between the points it is a quintic with the polynomial's heights, slopes and second
     /// derivatives at both ends, so the second derivative is continuous.
     pub fn from_heights(heights: &[f64], period: f64) -> Self {
-        let mut spectrum: Vec<Complex64> =
-            heights.iter().map(|z| Complex64::new(*z, 0.0)).collect();
-        let mut planner = FftPlanner::new();
-        planner.plan_fft_forward(heights.len()).process(&mut spectrum);
-        let derivative = |order: i32| {
-            let mut field = differentiate(&spectrum, period, order);
-            planner.plan_fft_inverse(heights.len()).process(&mut field);
-            field
+        Self { period, shape: Shape::Samples(samples_of(&spectrum_of(heights), period)) }
+    }
+
+    /// The profile without its shortest waves: those of up to `whole` waves per period are whole,
+    /// those of up to `growing` are multiplied by `share`, all others are left out.
+    pub fn partial(&self, whole: f64, growing: f64, share: f64) -> Self {
+        let part = |waves: f64| {
+            // Wavelengths are known to round-off.
+            let within = |most: f64| waves <= most * (1.0 + 1e-9);
+            if within(whole) {
+                1.0
+            } else if within(growing) {
+                share
+            } else {
+                0.0
+            }
         };
-        let mut derivative = derivative;
-        let (slopes, curvatures) = (derivative(1), derivative(2));
-        let samples = heights
-            .iter()
-            .zip(slopes.iter().zip(&curvatures))
-            .map(|(height, (slope, curvature))| Height {
-                height: *height,
-                slope: slope.re,
-                curvature: curvature.re,
-            })
-            .collect();
-        Self { period, shape: Shape::Samples(samples) }
+        let shape = match &self.shape {
+            Shape::Waves(waves) => {
+                let scaled = |wave: &Wave| Wave {
+                    amplitude: part(self.period / wave.wavelength) * wave.amplitude,
+                    ..*wave
+                };
+                Shape::Waves(waves.iter().map(scaled).collect())
+            }
+            Shape::Samples(samples) => {
+                let heights: Vec<f64> = samples.iter().map(|sample| sample.height).collect();
+                let mut spectrum = spectrum_of(&heights);
+                for (k, component) in spectrum.iter_mut().enumerate() {
+                    *component *= part(k.min(heights.len() - k) as f64);
+                }
+                Shape::Samples(samples_of(&spectrum, self.period))
+            }
+        };
+        Self { period: self.period, shape }
     }
 
     /// Length of the period in m.
@@ -126,6 +140,32 @@ impl RigidProfile {
     pub fn sample(&self, points: usize) -> Vec<f64> {
         (0..points).map(|i| self.at(i as f64 * self.period / points as f64).height).collect()
     }
+}
+
+fn spectrum_of(heights: &[f64]) -> Vec<Complex64> {
+    let mut spectrum: Vec<Complex64> = heights.iter().map(|z| Complex64::new(*z, 0.0)).collect();
+    FftPlanner::new().plan_fft_forward(heights.len()).process(&mut spectrum);
+    spectrum
+}
+
+/// Heights, slopes and curvatures of a trigonometric polynomial at its points.
+fn samples_of(spectrum: &[Complex64], period: f64) -> Vec<Height> {
+    let mut planner = FftPlanner::new();
+    let mut derivative = |order: i32| {
+        let mut field = differentiate(spectrum, period, order);
+        planner.plan_fft_inverse(spectrum.len()).process(&mut field);
+        field
+    };
+    let [heights, slopes, curvatures] = [derivative(0), derivative(1), derivative(2)];
+    heights
+        .iter()
+        .zip(slopes.iter().zip(&curvatures))
+        .map(|(height, (slope, curvature))| Height {
+            height: height.re,
+            slope: slope.re,
+            curvature: curvature.re,
+        })
+        .collect()
 }
 
 fn shortest_waves(samples: &[Height]) -> f64 {
@@ -233,6 +273,31 @@ mod tests {
         assert_eq!(RigidProfile::from_heights(&samples, 1.0).steep_waves(), 2.0);
         let flat = Wave { wavelength: 1.0, amplitude: 0.0, phase: 0.0 };
         assert_eq!(steep(&[flat]), 1.0);
+    }
+
+    #[test]
+    fn a_partial_profile_has_the_waves_asked_for() {
+        let exact = RigidProfile::from_waves(&waves(), 1.0);
+        let samples = RigidProfile::from_heights(&wave::sample(&waves(), 1.0, 64), 1.0);
+        let [long, middle, short] = waves()[..] else { panic!("three waves") };
+        let halved = Wave { amplitude: 0.5 * middle.amplitude, ..middle };
+        let expected = [
+            ((1.0, 1.0, 0.3), vec![long]),
+            ((1.0, 2.0, 0.5), vec![long, halved]),
+            ((2.0, f64::INFINITY, 0.0), vec![long, middle]),
+            ((2.0, f64::INFINITY, 1.0), vec![long, middle, short]),
+        ];
+        for ((whole, growing, share), waves) in expected {
+            let expected = RigidProfile::from_waves(&waves, 1.0);
+            for profile in [&exact, &samples] {
+                let partial = profile.partial(whole, growing, share);
+                for i in 0..64 {
+                    let (x, expected) = (f64::from(i) / 64.0, expected.at(f64::from(i) / 64.0));
+                    assert_relative_eq!(partial.at(x).height, expected.height, epsilon = 1e-12);
+                    assert_relative_eq!(partial.at(x).slope, expected.slope, epsilon = 1e-10);
+                }
+            }
+        }
     }
 
     #[test]

@@ -23,9 +23,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 /// Revision of the solver: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 2;
+const SOLVER_REVISION: u32 = 3;
 
 /// Section `[fem]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

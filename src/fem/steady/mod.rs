@@ -8,12 +8,14 @@
 //! | module | what it does |
 //! |---|---|
 //! | `path` | continuation: growing pressure, finer meshes, shifted rows |
+//! | `growth` | profiles of many scales: octaves that grow at constant pressure |
 //! | `newton` | one pressure on one mesh: barrier and active set, GMRES |
 //! | `state`, `transfer` | the unknown fields, and how they are taken to another mesh |
 //! | [`solution`] | friction, area, separation, dissipation and fields of a solved contact |
 //! | `area` | the pressure that gives a wanted contact area |
 
 mod area;
+mod growth;
 mod newton;
 mod path;
 pub mod solution;
@@ -90,6 +92,9 @@ pub const HEIGHT_RANGE: RangeInclusive<f64> = 0.1..=10.0;
 
 /// Points of a path that ended whose contact is closed, from the last one back, before it is given up.
 const MOST_CLOSED: usize = 8;
+/// Shortest waves on the period up to which a path sets out from a slight contact of the highest tip:
+/// with three octaves that takes half the time of growth, with four twice, with more it ends early.
+const MOST_WAVES_FROM_A_TIP: f64 = 4.0;
 /// Columns of the coarsest mesh on the shortest wave of the profile.
 const COARSEST_PER_WAVE: f64 = 24.0;
 /// Pressure of the first contact over the modulus at the shortest wave.
@@ -123,10 +128,38 @@ const REFINEMENT: f64 = 1.5;
 /// # Ok::<(), asperity::fem::error::FemError>(())
 /// ```
 pub struct SteadyContact {
+    setting: Setting,
     scene: Arc<Scene>,
     options: BlockOptions,
-    speed: f64,
     path: Option<Path>,
+}
+
+/// The rubber and its speed, without a profile.
+struct Setting {
+    rubber: Rubber,
+    finite: FiniteStrainRubber,
+    /// Speed in m/s.
+    speed: f64,
+}
+
+impl Setting {
+    fn scene(&self, profile: RigidProfile, columns: usize) -> Scene {
+        let period = profile.period();
+        let modulus = |q: f64| self.rubber.reduced_modulus(q * self.speed).norm();
+        let branches = self.finite.branches.iter();
+        // One tip carries all; a contact of a few percent of the shortest wave.
+        let waves = profile.shortest_waves();
+        Scene {
+            rubber: self.finite.clone(),
+            relaxation_lengths: branches
+                .map(|branch| self.speed * branch.relaxation_time)
+                .collect(),
+            heights: Heights::of(&profile, 8 * columns),
+            first_pressure: FIRST_PRESSURE * modulus(TAU * waves / period) / waves,
+            stiff_modulus: modulus(PI * columns as f64 / period),
+            profile,
+        }
+    }
 }
 
 impl SteadyContact {
@@ -145,22 +178,9 @@ impl SteadyContact {
         let finite = FiniteStrainRubber::new(rubber, rheology)?;
         check_speed(speed)?;
         options.check(profile.period())?;
-        let relaxation_lengths =
-            finite.branches.iter().map(|branch| speed * branch.relaxation_time).collect();
-        let period = profile.period();
-        let modulus = |q: f64| rubber.reduced_modulus(q * speed).norm();
-        // One tip carries all; a contact of a few percent of the shortest wave.
-        let waves = profile.shortest_waves();
-        let first_pressure = FIRST_PRESSURE * modulus(TAU * waves / period) / waves;
-        let scene = Scene {
-            rubber: finite,
-            relaxation_lengths,
-            heights: Heights::of(&profile, 8 * options.columns),
-            profile,
-            first_pressure,
-            stiff_modulus: modulus(PI * options.columns as f64 / period),
-        };
-        Ok(Self { scene: Arc::new(scene), options, speed, path: None })
+        let setting = Setting { rubber: rubber.clone(), finite, speed };
+        let scene = Arc::new(setting.scene(profile, options.columns));
+        Ok(Self { setting, scene, options, path: None })
     }
 
     /// The contact at the mean pressure `p` in Pa.
@@ -179,7 +199,7 @@ impl SteadyContact {
         if let Some(path) = &mut self.path
             && let Some(exact) = path.finish_nearby(pressure)
         {
-            return Ok(read(path, exact, &self.scene, self.speed, pressure));
+            return Ok(read(path, exact, &self.scene, self.setting.speed, pressure));
         }
         if let Some(solution) = self.go_on(pressure) {
             return Ok(solution);
@@ -196,7 +216,7 @@ impl SteadyContact {
             reached,
         };
         let Some(path) = &mut self.path else { return Err(ended(PathEnd::NotStarted)) };
-        match last_converged(path, &self.scene, self.speed) {
+        match last_converged(path, &self.scene, self.setting.speed) {
             // What failed at first may succeed at the second attempt: rows are shifted on in parts.
             Some(solution) if solution.mean_pressure == pressure => Ok(solution),
             Some(solution) => Err(ended(PathEnd::At {
@@ -213,12 +233,18 @@ impl SteadyContact {
         let path = self.path.as_mut()?;
         path.return_towards(pressure);
         path.advance_to(pressure).ok()?;
-        conclude(path, &self.scene, self.speed).ok()
+        conclude(path, &self.scene, self.setting.speed).ok()
     }
 
-    /// The solution on a new path, from a slight contact on the coarsest mesh to the finest one; the
-    /// path stays where it ends.
+    /// The solution on a new path, from a slight contact on the coarsest mesh to the finest one, or
+    /// for a profile of many scales from its longest waves to the shortest; the path stays where it
+    /// ends.
     fn set_out(&mut self, pressure: f64) -> Option<SteadySolution> {
+        if self.scene.profile.shortest_waves() > MOST_WAVES_FROM_A_TIP {
+            let profile = &self.scene.profile;
+            self.path = growth::grow(&self.setting, profile, self.options, pressure).ok();
+            return conclude(self.path.as_mut()?, &self.scene, self.setting.speed).ok();
+        }
         let mut path: Option<Path> = None;
         let mut arrived = Err(Stuck);
         for mesh in self.meshes() {
@@ -234,7 +260,7 @@ impl SteadyContact {
         }
         self.path = path;
         arrived.ok()?;
-        conclude(self.path.as_mut()?, &self.scene, self.speed).ok()
+        conclude(self.path.as_mut()?, &self.scene, self.setting.speed).ok()
     }
 
     /// From the coarsest to the wanted mesh.

@@ -19,7 +19,8 @@ use crate::fem::block::Block;
 use crate::rubber::FiniteStrainRubber;
 use std::sync::Arc;
 
-/// What does not change along a path.
+/// What does not change along a path of growing pressure.
+#[derive(Clone)]
 pub(super) struct Scene {
     pub rubber: FiniteStrainRubber,
     /// Relaxation lengths `v τ` in m.
@@ -59,6 +60,8 @@ struct Waypoint {
 
 /// Barrier over the roughness on the way.
 const BARRIER: f64 = 1e-3;
+/// Barrier while the profile grows: a higher one lets contacts open in longer steps.
+const GROWTH_BARRIER: f64 = 3e-3;
 /// Barriers from which the contact set is closed: the first is the cheapest, the next ones tell contact
 /// from gap more sharply where the iteration does not settle.
 const LOW_BARRIERS: [f64; 3] = [1e-4, 1e-5, 1e-6];
@@ -197,6 +200,29 @@ impl Path {
             highest = NEXT_ENTRY * waypoint.pressure;
         }
         Err(Stuck)
+    }
+
+    /// Puts another profile, or the scales of another mesh, in the place of those there are; the
+    /// state stays what it is.
+    pub fn enter(&mut self, scene: Scene) {
+        self.scene = Arc::new(scene);
+    }
+
+    /// Goes over to a nearby profile at the same pressure. Returns the Newton steps that it took.
+    pub fn reshape(&mut self, scene: Scene) -> Result<usize, Stuck> {
+        self.closed = None;
+        self.stand_upright(MOST_SHEAR);
+        let before = std::mem::replace(&mut self.scene, Arc::new(scene));
+        let spent = self.cost.newton_steps;
+        // The step of Newton's method from the state of the profile before is the tangent of
+        // the path; forces and gaps stay a pair of the barrier.
+        if let Err(Stuck) = self.converge(self.pressure, GROWTH_BARRIER, ON_THE_WAY) {
+            self.scene = before;
+            return Err(Stuck);
+        }
+        self.passed.clear();
+        self.pass();
+        Ok(self.cost.newton_steps - spent)
     }
 
     fn pass(&mut self) {
