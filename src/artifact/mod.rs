@@ -30,7 +30,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo};
+pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo, Storage};
 pub use arrays::{arrays_info, read_arrays, write_arrays};
 pub use columns::{Column, ColumnType, Row, columns};
 pub use digest::Digest;

@@ -16,7 +16,7 @@ use tempfile::TempDir;
 
 use super::table::{decode_rows, read_bytes};
 use super::{
-    ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, read_arrays,
+    ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, Storage, read_arrays,
     write_arrays, write_table,
 };
 
@@ -285,9 +285,11 @@ impl Pending<'_> {
         schema: &str,
         version: u32,
         description: &str,
+        storage: Storage,
         datasets: &[ArrayDataset],
     ) -> Result<(), ArtifactError> {
-        let content = write_arrays(&self.path(file), schema, version, description, datasets)?;
+        let content =
+            write_arrays(&self.path(file), schema, version, description, storage, datasets)?;
         self.record(file, schema, version, Some(content))
     }
 

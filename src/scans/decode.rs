@@ -66,7 +66,8 @@ pub(super) fn body_start(text: &str, format: &TextFormat) -> Result<usize, ScanP
 
 /// Offset of the line after the one at `start`; a line ends with `\n`, `\r\n` or `\r`.
 pub(super) fn next_line(text: &str, start: usize) -> usize {
-    match text[start..].find(['\n', '\r']) {
+    // Bytes: the search for characters is slower, and is called for every line.
+    match text.as_bytes()[start..].iter().position(|byte| matches!(byte, b'\n' | b'\r')) {
         None => text.len(),
         Some(length) if text[start + length..].starts_with("\r\n") => start + length + 2,
         Some(length) => start + length + 1,

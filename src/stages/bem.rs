@@ -6,7 +6,7 @@ use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
     ArrayDataset, ArraysSchema, AttributeSchema, DatasetSchema, Metadata, Pending, Row, RunView,
-    SchemaVersion, SolveStore,
+    SchemaVersion, SolveStore, Storage,
 };
 use crate::contact::CurveValue;
 use crate::recipe::{Violation, demand};
@@ -333,7 +333,8 @@ fn write(pending: &mut Pending, results: &[CurveResult]) -> Result<Vec<String>, 
         results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
     if !fields.is_empty() {
         let (schema, description) = (FIELDS_SCHEMA, FIELDS_DESCRIPTION);
-        pending.write_arrays(FIELDS_FILE, schema, FIELDS_VERSION, description, &fields)?;
+        let storage = Storage::Compressed;
+        pending.write_arrays(FIELDS_FILE, schema, FIELDS_VERSION, description, storage, &fields)?;
     }
     Ok(Vec::new())
 }

@@ -8,7 +8,7 @@ use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
     ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Input, Metadata,
-    Row, RunView, SchemaVersion,
+    Row, RunView, SchemaVersion, Storage,
 };
 use crate::recipe::{Violation, demand};
 use crate::scans::file::{Grid, MapLines, parse_file};
@@ -275,16 +275,18 @@ pub fn run(
     check_equal_grids(read.iter().flatten().flat_map(|(windows, _)| windows))?;
     let windows = read.iter_mut().flatten().flat_map(|(windows, _)| windows);
     share_spacing(&mut windows.collect::<Vec<_>>());
-    let datasets: Vec<ArrayDataset> = files
-        .iter()
-        .zip(&read)
-        .flat_map(|(file, scans)| scans.iter().map(move |scan| (file, scan)))
-        .flat_map(|(file, (windows, _))| windows.iter().map(|window| dataset(window, file)))
-        .collect();
-    let reports: Vec<&ConditioningReport> =
-        read.iter().flatten().map(|(_, report)| report).collect();
+    let (mut datasets, mut reports) = (Vec::new(), Vec::new());
+    for (file, scans) in files.iter().zip(read) {
+        for (windows, report) in scans {
+            datasets.extend(windows.into_iter().map(|window| dataset(window, file)));
+            reports.push(report);
+        }
+    }
+    let reports: Vec<&ConditioningReport> = reports.iter().collect();
     let pending = &mut context.pending;
-    pending.write_arrays(SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION, SCANS_DESCRIPTION, &datasets)?;
+    let (schema, description) = (SCANS_SCHEMA, SCANS_DESCRIPTION);
+    let storage = Storage::Plain;
+    pending.write_arrays(SCANS_FILE, schema, SCANS_VERSION, description, storage, &datasets)?;
     let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
     pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
     let rows: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
@@ -347,7 +349,7 @@ fn share_spacing(windows: &mut [&mut LineScan]) {
     windows.iter_mut().for_each(|window| window.spacing = mean);
 }
 
-fn dataset(window: &LineScan, file: &ScanFile) -> ArrayDataset {
+fn dataset(window: LineScan, file: &ScanFile) -> ArrayDataset {
     let attributes = BTreeMap::from([
         ("spacing_m".to_owned(), Attribute::Float(window.spacing)),
         ("origin_m".to_owned(), Attribute::Float(window.origin)),
@@ -355,8 +357,7 @@ fn dataset(window: &LineScan, file: &ScanFile) -> ArrayDataset {
         ("source".to_owned(), Attribute::Text(file.name.clone())),
         ("source_digest".to_owned(), Attribute::Text(file.digest.to_string())),
     ]);
-    let (name, values) = (window.name.clone(), window.heights.clone());
-    ArrayDataset { name, unit: "m".into(), attributes, values }
+    ArrayDataset { name: window.name, unit: "m".into(), attributes, values: window.heights }
 }
 
 /// Reads the windows of a run.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use asperity::artifact::{
     ArrayDataset, Attribute, Digest, Identity, Input, Manifest, Metadata, Row, RunFolder,
-    SchemaVersion, SolveStore,
+    SchemaVersion, SolveStore, Storage,
 };
 use serde_json::json;
 use tempfile::TempDir;
@@ -66,7 +66,16 @@ fn run() -> TempDir {
     let mut pending = run.begin("bem").unwrap();
     let rows: Vec<_> = (0..20).map(solve).collect();
     pending.write_table("solves.arrow", &rows, &Metadata::new()).unwrap();
-    pending.write_arrays("fields.h5", "asperity.example.fields", 1, "Fields.", &[heights]).unwrap();
+    pending
+        .write_arrays(
+            "fields.h5",
+            "asperity.example.fields",
+            1,
+            "Fields.",
+            Storage::Plain,
+            &[heights],
+        )
+        .unwrap();
     let manifest =
         Manifest::new(&identity, pending.outputs().to_vec(), vec!["one is coarse".into()], 1.5);
     pending.commit(&manifest).unwrap();

@@ -35,7 +35,11 @@ fn datasets() -> Vec<ArrayDataset> {
 }
 
 fn write(path: &Path, datasets: &[ArrayDataset]) -> Digest {
-    write_arrays(path, SCHEMA, 3, "Heights of a test", datasets).unwrap()
+    write_as(Storage::Compressed, path, datasets)
+}
+
+fn write_as(storage: Storage, path: &Path, datasets: &[ArrayDataset]) -> Digest {
+    write_arrays(path, SCHEMA, 3, "Heights of a test", storage, datasets).unwrap()
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {
@@ -45,14 +49,16 @@ fn bits(values: &[f64]) -> Vec<u64> {
 #[test]
 fn arrays_and_attributes_come_back_to_the_bit() {
     let (_folder, path) = place();
-    write(&path, &datasets());
-    let found = read_arrays(&path, SCHEMA, 3).unwrap();
-    assert_eq!(found.len(), 3);
-    for (found, written) in found.iter().zip(datasets()) {
-        assert_eq!(found.name, written.name);
-        assert_eq!(found.unit, written.unit);
-        assert_eq!(found.attributes, written.attributes);
-        assert_eq!(bits(&found.values), bits(&written.values));
+    for storage in [Storage::Plain, Storage::Compressed] {
+        write_as(storage, &path, &datasets());
+        let found = read_arrays(&path, SCHEMA, 3).unwrap();
+        assert_eq!(found.len(), 3);
+        for (found, written) in found.iter().zip(datasets()) {
+            assert_eq!(found.name, written.name);
+            assert_eq!(found.unit, written.unit);
+            assert_eq!(found.attributes, written.attributes);
+            assert_eq!(bits(&found.values), bits(&written.values));
+        }
     }
 }
 
@@ -75,11 +81,16 @@ fn the_file_describes_itself() {
 fn equal_arrays_give_equal_bytes_and_order_is_no_content() {
     let (_folder, path) = place();
     let digest = write(&path, &datasets());
-    let first = std::fs::read(&path).unwrap();
+    let files = [Storage::Plain, Storage::Compressed].map(|storage| {
+        write_as(storage, &path, &datasets());
+        (storage, std::fs::read(&path).unwrap())
+    });
     // HDF5 time stamps have a resolution of one second.
     std::thread::sleep(std::time::Duration::from_millis(1100));
-    assert_eq!(write(&path, &datasets()), digest);
-    assert_eq!(std::fs::read(&path).unwrap(), first);
+    for (storage, first) in files {
+        assert_eq!(write_as(storage, &path, &datasets()), digest);
+        assert_eq!(std::fs::read(&path).unwrap(), first, "{storage:?}");
+    }
     let mut reversed = datasets();
     reversed.reverse();
     assert_eq!(write(&path, &reversed), digest);
@@ -183,10 +194,12 @@ fn datasets_that_hdf5_cannot_hold_are_refused() {
         (vec![nul], "NUL"),
     ];
     for (datasets, expected) in cases {
-        let message = write_arrays(&path, SCHEMA, 3, "", &datasets).unwrap_err().to_string();
+        let message =
+            write_arrays(&path, SCHEMA, 3, "", Storage::Plain, &datasets).unwrap_err().to_string();
         assert!(message.contains(expected), "{message}");
     }
     let nowhere = path.join("none/arrays.h5");
-    let message = write_arrays(&nowhere, SCHEMA, 3, "", &[one()]).unwrap_err().to_string();
+    let message =
+        write_arrays(&nowhere, SCHEMA, 3, "", Storage::Plain, &[one()]).unwrap_err().to_string();
     assert!(message.contains("none/arrays.h5"), "{message}");
 }

@@ -26,7 +26,9 @@ fn fill(pending: &mut Pending) {
         attributes: Default::default(),
         values: vec![1.0, 2.0],
     };
-    pending.write_arrays("heights.h5", "asperity.test.heights", 1, "Heights", &[array]).unwrap();
+    pending
+        .write_arrays("heights.h5", "asperity.test.heights", 1, "Heights", Storage::Plain, &[array])
+        .unwrap();
     fs::write(pending.path("notes.txt"), "notes").unwrap();
     pending.record("notes.txt", "asperity.test.notes", 1, None).unwrap();
 }

@@ -173,11 +173,14 @@ fn check_plausible(scan: &RawScan, format: &TextFormat) -> Result<(), ScanProble
     // No profilometer of texture has a range of a metre.
     const LARGEST_RANGE_M: f64 = 1.0;
 
-    let steps: Vec<f64> = scan.positions.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let spacing = Data::new(steps).median();
-    if !SPACINGS_M.contains(&spacing) {
-        let key = if format.x_spacing_um.is_some() { "x_spacing_um" } else { "x_unit" };
-        return Err(ScanProblem::AbsurdSpacing { spacing_mm: spacing * 1e3, key });
+    let steps = || scan.positions.windows(2).map(|pair| pair[1] - pair[0]);
+    // The median is within the range where every step is; most files need none.
+    if !steps().all(|step| SPACINGS_M.contains(&step)) {
+        let spacing = Data::new(steps().collect::<Vec<_>>()).median();
+        if !SPACINGS_M.contains(&spacing) {
+            let key = if format.x_spacing_um.is_some() { "x_spacing_um" } else { "x_unit" };
+            return Err(ScanProblem::AbsurdSpacing { spacing_mm: spacing * 1e3, key });
+        }
     }
     // `f64::min` and `max` pass over NaN.
     let lowest_m = scan.heights.iter().copied().fold(f64::INFINITY, f64::min);
