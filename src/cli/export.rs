@@ -11,10 +11,11 @@ use super::last_run::LastRun;
 use super::output::{note, print, write_file};
 use crate::artifact::{RunView, data_frame as data_frame_of, write_csv, write_parquet};
 use crate::report::{
-    FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
-    markdown,
+    FrictionTable, cleaning_markdown, comparison_markdown, data_frame, friction_figure,
+    friction_tables, latex, markdown,
 };
 use crate::stages::Stage;
+use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE};
 use crate::stages::tables::{
     COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, Model, NOTE_KEY,
 };
@@ -31,6 +32,8 @@ Examples:
     asperity export runs/asphalt --format svg --to friction.svg
   The local corrections of the hybrid method, one by one:
     asperity export runs/asphalt --table hybrid/local --format csv --to local.csv
+  What was cleaned from the scans, and what that means for their slope:
+    asperity export runs/captif --format markdown --cleaning --to cleaning.md
   The study of one sine wave as a document, a figure and one CSV file for each table:
     asperity export runs/sinusoid --format markdown --to study.md
     asperity export runs/sinusoid --format svg --to study.svg
@@ -49,6 +52,9 @@ pub(super) struct Export {
     /// The computed tables beside the published ones that the recipe names, as a Markdown document.
     #[arg(long)]
     comparison: bool,
+    /// What was found wrong in the scans and what was done with it, as a Markdown document.
+    #[arg(long, conflicts_with_all = ["comparison", "table", "model", "waves", "speed"])]
+    cleaning: bool,
     /// Any one table of the run, such as hybrid/local, as csv or parquet.
     #[arg(long, value_name = "STAGE/TABLE", conflicts_with_all = ["comparison", "model", "waves", "speed"])]
     table: Option<String>,
@@ -92,6 +98,9 @@ impl Export {
             )));
         }
         let view = RunView::of(&self.run);
+        if self.cleaning {
+            return self.cleaning(&view, quiet);
+        }
         if let Some(table) = &self.table {
             return self.one_table(&view, table, quiet);
         }
@@ -142,6 +151,21 @@ impl Export {
         if let Some(doubt) = last_run.and_then(|last_run| last_run.doubt(&self.run, stage)) {
             note(quiet, format_args!("warning: {doubt}"));
         }
+    }
+
+    fn cleaning(&self, view: &RunView, quiet: bool) -> Result<(), CliError> {
+        if self.format != Format::Markdown {
+            return Err(CliError::input(
+                "the report of cleaning is a document: give --format markdown; its numbers are \
+                 the table ingest/faults",
+            ));
+        }
+        view.verify("ingest").map_err(CliError::input)?;
+        self.warn_of_doubt("ingest", quiet);
+        let (scans, _) = view.read_table("ingest", REPORT_FILE).map_err(CliError::input)?;
+        let (faults, _) = view.read_table("ingest", FAULTS_FILE).map_err(CliError::input)?;
+        let (windows, _) = view.read_table("ingest", WINDOWS_FILE).map_err(CliError::input)?;
+        self.text(&cleaning_markdown(&scans, &faults, &windows))
     }
 
     /// A table of the run as it is.

@@ -1,10 +1,12 @@
 //! Friction tables and figures for people.
 
+mod cleaning;
 mod figure;
 mod sinusoid;
 mod sinusoid_figure;
 mod tables;
 
+pub use cleaning::cleaning_markdown;
 pub use figure::{FigureError, friction_figure};
 pub use sinusoid::Study;
 pub use sinusoid_figure::study_figure;

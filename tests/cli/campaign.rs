@@ -270,6 +270,38 @@ fn exports_are_complete_or_refused() {
     assert!(export("out --format parquet --to friction.parquet").error(2).contains("--force"));
 }
 
+#[test]
+fn the_report_of_cleaning_names_planted_faults_with_their_scan() {
+    let campaign = Campaign::new();
+    // One spike of 0.9 mm, and a wall of 0.5 mm from 4 mm on in another scan.
+    let planted = |name: &str, lift: &dyn Fn(f64) -> f64| {
+        let lines = campaign.read(name);
+        let lifted: Vec<String> = lines
+            .lines()
+            .map(|line| match line.split_once(';').map(|(x, z)| (x.parse(), z.parse::<f64>())) {
+                Some((Ok(x), Ok(z))) => format!("{x};{:.3}", z + lift(x)),
+                _ => line.to_owned(),
+            })
+            .collect();
+        campaign.write(name, &(lifted.join("\n") + "\n"));
+    };
+    planted("scans/track_1.txt", &|x| if x == 5.0 { 900.0 } else { 0.0 });
+    planted("scans/track_2.txt", &|x| if x < 4.0 { 0.0 } else { 500.0 });
+    assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).code, 0);
+    let report = outcome(&campaign, "export out --format markdown --cleaning").result();
+    let section = |scan: &str| {
+        let start = report.find(&format!("## {scan}\n")).unwrap();
+        report[start + 3..].split("\n## ").next().unwrap().to_owned()
+    };
+    assert!(section("track_1").contains("| spikes | 1 | 0.31 % | missing |"), "{report}");
+    assert!(section("track_2").contains("| level jumps | 1 |"), "{report}");
+    assert!(!section("track_0").contains("| level jumps |"), "{report}");
+    assert!(!section("track_0").contains("| spikes |"), "{report}");
+    assert!(report.contains("3 of 3 kept"), "{report}");
+    let message = outcome(&campaign, "export out --format csv --cleaning").error(2);
+    assert!(message.contains("give --format markdown"), "{message}");
+}
+
 /// Nothing of the small campaign is steep, so that the microscale costs nothing and warns of it.
 fn with_microscale() -> Campaign {
     let campaign = Campaign::new();

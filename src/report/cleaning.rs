@@ -1,0 +1,156 @@
+//! What was cleaned from the scans, for the people who decide on it.
+
+use crate::stages::ingest::{FaultRow, ScanReportRow, WindowRow};
+use std::fmt::Write;
+
+/// The report of a campaign as a Markdown document: for each scan its points, the faults that were
+/// found, by which criterion, what was done with them and what that means for slope and shortest
+/// waves; then the windows that were rejected. Scans without any fault share one line.
+pub fn cleaning_markdown(
+    scans: &[ScanReportRow],
+    faults: &[FaultRow],
+    windows: &[WindowRow],
+) -> String {
+    let mut text = String::from("# What was cleaned\n");
+    let found = |scan: &ScanReportRow| -> Vec<&FaultRow> {
+        let of_scan = |fault: &&FaultRow| fault.scan == scan.scan && fault.count > 0;
+        faults.iter().filter(of_scan).collect()
+    };
+    let (clean, faulty): (Vec<_>, Vec<_>) = scans
+        .iter()
+        .map(|scan| (scan, found(scan)))
+        .partition(|(scan, found)| found.is_empty() && scan.points_missing == 0);
+    for (scan, found) in &faulty {
+        section(&mut text, scan, found);
+    }
+    if !clean.is_empty() {
+        let names: Vec<&str> = clean.iter().map(|(scan, _)| scan.scan.as_str()).collect();
+        let _ = write!(
+            text,
+            "\n## Without faults\n\n{} of {} scans: {}\n",
+            clean.len(),
+            scans.len(),
+            names.join(", ")
+        );
+    }
+    let rejected: Vec<(&str, &str)> = windows
+        .iter()
+        .filter_map(|window| Some((window.window.as_str(), window.rejected.as_deref()?)))
+        .collect();
+    let _ = write!(
+        text,
+        "\n## Windows\n\n{} of {} kept.\n",
+        windows.len() - rejected.len(),
+        windows.len()
+    );
+    for (window, reason) in rejected {
+        let _ = writeln!(text, "- {window}: {reason}");
+    }
+    text
+}
+
+fn section(text: &mut String, scan: &ScanReportRow, faults: &[&FaultRow]) {
+    let missing = 100.0 * scan.points_missing as f64 / scan.points_read.max(1) as f64;
+    let _ = write!(
+        text,
+        "\n## {}\n\n{} points, {:.2} µm apart; {} without a height in the file ({missing:.1} %).\n",
+        scan.scan, scan.points_read, scan.raw_spacing_um, scan.points_missing
+    );
+    if faults.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n| fault | found | share | decision | rms slope with, without | shortest waves without, \
+         over with | criterion |\n|---|---:|---:|---|---:|---:|---|\n",
+    );
+    for fault in faults {
+        let slopes = match (fault.rms_slope_before, fault.rms_slope_after) {
+            (Some(before), Some(after)) => format!("{before:.3}, {after:.3}"),
+            _ => "–".into(),
+        };
+        let ratio =
+            fault.high_frequency_ratio.map_or_else(|| "–".into(), |ratio| format!("{ratio:.3}"));
+        let measure = match (fault.measure, &fault.measure_name) {
+            (Some(measure), Some(name)) => format!("; {name} {measure:.4}"),
+            _ => String::new(),
+        };
+        let _ = writeln!(
+            text,
+            "| {} | {} | {:.2} % | {}{measure} | {slopes} | {ratio} | {} |",
+            fault.fault,
+            fault.count,
+            100.0 * fault.share,
+            fault.decision,
+            fault.criterion.replace('|', "\\|")
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scan(name: &str, missing: u64) -> ScanReportRow {
+        ScanReportRow {
+            scan: name.into(),
+            points_read: 1000,
+            points_missing: missing,
+            points_absent: 0,
+            points_out_of_range: 0,
+            spikes: 0,
+            raw_spacing_um: 37.5,
+            largest_deviation_um: 0.0,
+            points_per_cell: 1,
+            spacing_um: 37.5,
+            windows_kept: 1,
+            windows_rejected: 0,
+        }
+    }
+
+    fn fault(scan: &str, fault: &str, count: u64) -> FaultRow {
+        FaultRow {
+            scan: scan.into(),
+            fault: fault.into(),
+            criterion: "a step | beyond ten".into(),
+            decision: "missing".into(),
+            count,
+            share: 0.0125,
+            measure: None,
+            measure_name: None,
+            rms_slope_before: Some(2.671),
+            rms_slope_after: Some(1.12),
+            high_frequency_ratio: Some(0.11),
+        }
+    }
+
+    #[test]
+    fn faults_stand_with_their_scan_and_clean_scans_share_a_line() {
+        let scans = [scan("a", 49), scan("b", 0), scan("c", 0)];
+        let faults = [
+            fault("a", "level jumps", 119),
+            fault("a", "spikes", 0),
+            fault("b", "spikes", 0),
+            fault("c", "tilt", 0),
+        ];
+        let window = |name: &str, rejected: Option<&str>| WindowRow {
+            window: name.into(),
+            origin_mm: 0.0,
+            missing_share: 0.3,
+            form_rms_mm: None,
+            rejected: rejected.map(str::to_owned),
+        };
+        let windows = [window("a-00", None), window("a-01", Some("30 % are missing"))];
+        let text = cleaning_markdown(&scans, &faults, &windows);
+        assert!(text.contains("## a\n\n1000 points, 37.50 µm apart; 49 without"), "{text}");
+        assert!(text.contains("(4.9 %)"), "{text}");
+        assert!(
+            text.contains(
+                "| level jumps | 119 | 1.25 % | missing | 2.671, 1.120 | 0.110 | a step \\| beyond ten |"
+            ),
+            "{text}"
+        );
+        assert!(!text.contains("| spikes |"), "{text}");
+        assert!(text.contains("2 of 3 scans: b, c"), "{text}");
+        assert!(text.contains("1 of 2 kept.\n- a-01: 30 % are missing"), "{text}");
+    }
+}
