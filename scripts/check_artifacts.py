@@ -7,8 +7,10 @@ scripts/requirements.txt lists. It is also an example of how to read the artifac
 """
 
 import json
+import re
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import h5py
 import numpy as np
@@ -73,6 +75,18 @@ def check_arrays(path):
         return file.attrs["schema"], int(file.attrs["version"]), f"{len(datasets)} datasets"
 
 
+def check_document(path):
+    """A text for people: figures are well-formed, documents name files that are there."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".svg":
+        root = ElementTree.fromstring(text)
+        demand(root.tag.endswith("svg"), f"{path} is no SVG but {root.tag}")
+        return f"figure of {root.get('width')} x {root.get('height')}"
+    for target in re.findall(r"!\[[^]]*\]\(([^)]*)\)", text):
+        demand((path.parent / target).is_file(), f"{path} shows {target}, which is not there")
+    return f"document of {len(text.splitlines())} lines"
+
+
 def check_solves(path, solves):
     worst = solves["residual"].max()
     demand(worst <= LARGEST_RESIDUAL, f"{path}: residual {worst:.1e} exceeds {LARGEST_RESIDUAL}")
@@ -114,6 +128,9 @@ def check_run(run):
             path = manifest.parent / output["file"]
             size = path.stat().st_size
             demand(size == output["size"], f"{path} has {size} bytes, not {output['size']}")
+            if output["schema"] == "asperity.document":
+                print(f"{path}: {check_document(path)}")
+                continue
             if path.suffix == ".h5":
                 schema, version, shape = check_arrays(path)
             else:

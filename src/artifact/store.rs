@@ -293,6 +293,17 @@ impl Pending<'_> {
         self.record(file, schema, version, Some(content))
     }
 
+    /// Writes a text for people, as Markdown or SVG, and records it as an output of the schema
+    /// `asperity.document`.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`].
+    pub fn write_document(&mut self, file: &str, text: &str) -> Result<(), ArtifactError> {
+        let path = self.path(file);
+        fs::write(&path, text).map_err(ArtifactError::io("write", &path))?;
+        self.record(file, "asperity.document", 1, None)
+    }
+
     /// Records a file written at [`Pending::path`] as an output; without a content digest its
     /// bytes are the content.
     ///

@@ -2,6 +2,7 @@
 
 mod study;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -11,11 +12,11 @@ use super::last_run::LastRun;
 use super::output::{note, print, write_file};
 use crate::artifact::{RunView, data_frame as data_frame_of, write_csv, write_parquet};
 use crate::report::{
-    FrictionTable, cleaning_markdown, comparison_markdown, data_frame, friction_figure,
-    friction_tables, latex, markdown,
+    FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
+    markdown,
 };
 use crate::stages::Stage;
-use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE};
+use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE, cleaning_markdown};
 use crate::stages::tables::{
     COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, Model, NOTE_KEY,
 };
@@ -165,7 +166,7 @@ impl Export {
         let (scans, _) = view.read_table("ingest", REPORT_FILE).map_err(CliError::input)?;
         let (faults, _) = view.read_table("ingest", FAULTS_FILE).map_err(CliError::input)?;
         let (windows, _) = view.read_table("ingest", WINDOWS_FILE).map_err(CliError::input)?;
-        self.text(&cleaning_markdown(&scans, &faults, &windows))
+        self.text(&cleaning_markdown(&scans, &faults, &windows, &BTreeMap::new()))
     }
 
     /// A table of the run as it is.

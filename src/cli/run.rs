@@ -2,6 +2,8 @@
 
 use clap::Args;
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::sync::Mutex;
 
 use super::interrupt::Interrupt;
@@ -9,9 +11,10 @@ use super::output::{json, note, print};
 use super::progress::Progress;
 use super::recipe_options::RecipeOptions;
 use super::{CliError, values};
-use crate::artifact::Manifest;
+use crate::artifact::{Manifest, RunView};
 use crate::pipeline::{self, Event, Selection};
 use crate::stages::Stage;
+use crate::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -93,6 +96,9 @@ impl Run {
             Event::Finished(stage, manifest) => {
                 progress.finish();
                 note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
+                if stage == Stage::Ingest {
+                    cleaned(quiet, &out);
+                }
                 warn(quiet, manifest);
                 let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
                 record(StageSummary { stage, computed: true, seconds, warnings });
@@ -125,4 +131,35 @@ fn warn(quiet: bool, manifest: &Manifest) {
     for warning in &manifest.warnings {
         note(quiet, format_args!("  warning: {warning}"));
     }
+}
+
+/// What was cleaned from the scans, in one line, and where more of it stands.
+fn cleaned(quiet: bool, out: &Path) {
+    let view = RunView::of(out);
+    // A summary must not fail a run that has its results: whoever reads them next says why.
+    let Ok((rows, _)) = view.read_table::<FaultRow>("ingest", FAULTS_FILE) else { return };
+    let taken = |row: &&FaultRow| {
+        row.count > 0 && matches!(row.decision.as_str(), "missing" | "cut" | "averaged")
+    };
+    let mut counts: BTreeMap<&str, u64> = BTreeMap::new();
+    let mut scans = BTreeSet::new();
+    for row in rows.iter().filter(taken) {
+        *counts.entry(&row.fault).or_default() += row.count;
+        scans.insert(&row.scan);
+    }
+    if counts.is_empty() {
+        return;
+    }
+    let counts: Vec<String> =
+        counts.iter().map(|(fault, count)| format!("{count} {fault}")).collect();
+    let report = view.file("ingest", CLEANING_FILE);
+    note(
+        quiet,
+        format_args!(
+            "  cleaned: {} in {} scans, see {}",
+            counts.join(", "),
+            scans.len(),
+            report.display()
+        ),
+    );
 }

@@ -1,4 +1,4 @@
-//! Means, spreads and confidence intervals of small samples.
+//! Means, spreads and confidence intervals of small samples, and lines through points.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -32,6 +32,27 @@ impl MeanEstimate {
     }
 }
 
+/// Least-squares line of `y` over `x`: intercept and slope. The slope of fewer than two different
+/// `x` is NaN.
+pub fn least_squares_line(
+    x: impl Iterator<Item = f64> + Clone,
+    y: impl Iterator<Item = f64> + Clone,
+) -> (f64, f64) {
+    let mean = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) =
+            values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+        sum / count
+    };
+    let (mean_x, mean_y) = (mean(&mut x.clone()), mean(&mut y.clone()));
+    let (mut covariance, mut variance) = (0.0, 0.0);
+    for (x, y) in x.zip(y) {
+        covariance += (x - mean_x) * (y - mean_y);
+        variance += (x - mean_x).powi(2);
+    }
+    let slope = covariance / variance;
+    (mean_y - slope * mean_x, slope)
+}
+
 /// The 97.5 % quantile of Student's t, the factor of a two-sided 95 % interval.
 ///
 /// # Panics
@@ -58,6 +79,21 @@ pub fn jackknife_95(estimates: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_is_found_again_and_one_point_makes_none() {
+        let x = [0.0, 1.0, 4.0];
+        let (intercept, slope) =
+            least_squares_line(x.into_iter(), x.into_iter().map(|x| 3.0 - 2.0 * x));
+        approx::assert_abs_diff_eq!(intercept, 3.0, epsilon = 1e-14);
+        approx::assert_abs_diff_eq!(slope, -2.0, epsilon = 1e-15);
+        // Normal equations by hand: means 1 and 2, covariance 1, variance 2.
+        let (intercept, slope) =
+            least_squares_line([0.0, 1.0, 2.0].into_iter(), [1.0, 3.0, 2.0].into_iter());
+        assert_eq!((intercept, slope), (1.5, 0.5));
+        let one = || [1.0].into_iter();
+        assert!(least_squares_line(one(), one()).1.is_nan());
+    }
 
     #[test]
     fn interval_of_five_values_uses_the_tabulated_quantile() {

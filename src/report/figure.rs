@@ -6,10 +6,10 @@ use plotters::prelude::*;
 /// A figure that could not be drawn.
 #[derive(Debug, thiserror::Error)]
 #[error("the figure could not be drawn: {0}")]
-pub struct FigureError(pub(super) String);
+pub struct FigureError(pub(crate) String);
 
 /// Distinct for readers who do not see all colours (Okabe & Ito).
-pub(super) const COLOURS: [RGBColor; 6] = [
+pub(crate) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -19,7 +19,7 @@ pub(super) const COLOURS: [RGBColor; 6] = [
 ];
 
 const SIZE: (u32, u32) = (900, 560);
-pub(super) const FONT: &str = "sans-serif";
+pub(crate) const FONT: &str = "sans-serif";
 
 /// Friction over contact area: for each table the average as a line and the 95 % confidence
 /// interval of the mean as a band. Returns the SVG.

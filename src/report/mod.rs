@@ -1,12 +1,10 @@
 //! Friction tables and figures for people.
 
-mod cleaning;
-mod figure;
+pub(crate) mod figure;
 mod sinusoid;
 mod sinusoid_figure;
 mod tables;
 
-pub use cleaning::cleaning_markdown;
 pub use figure::{FigureError, friction_figure};
 pub use sinusoid::Study;
 pub use sinusoid_figure::study_figure;

@@ -1,8 +1,12 @@
 //! ingest: from scan files to windows of equal spacing.
 
+mod cleaning;
 mod faults;
+mod picture;
 
+pub use cleaning::{CLEANING_FILE, cleaning_markdown};
 pub use faults::{FAULTS_FILE, FaultRow};
+pub use picture::fault_picture;
 
 use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
@@ -15,6 +19,7 @@ use crate::scans::file::{Grid, MapLines, parse_file};
 use crate::scans::{TextFormat, parse_text};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use faults::{fault_rows, jump_warning};
+use picture::write_pictures;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,7 +27,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,6 +45,10 @@ pub struct Ingest {
     /// Every how many lines of a height map one is taken; 1 takes all.
     #[serde(default = "every_line", skip_serializing_if = "is_every_line")]
     pub map_line_step: usize,
+    /// Largest number of scans that get a picture of their faults beside `cleaning.md`; those whose
+    /// shortest waves the faults make most of come first.
+    #[serde(default = "twelve_pictures", skip_serializing_if = "is_twelve")]
+    pub fault_pictures: usize,
     /// How the scans are brought to equal spacing and freed of faults and form.
     #[serde(default)]
     pub conditioning: Conditioning,
@@ -61,6 +70,16 @@ fn every_line() -> usize {
 #[allow(clippy::trivially_copy_pass_by_ref)]
 fn is_every_line(step: &usize) -> bool {
     *step == every_line()
+}
+
+fn twelve_pictures() -> usize {
+    12
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_twelve(pictures: &usize) -> bool {
+    *pictures == twelve_pictures()
 }
 
 /// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
@@ -287,12 +306,15 @@ pub fn run(
     let (schema, description) = (SCANS_SCHEMA, SCANS_DESCRIPTION);
     let storage = Storage::Plain;
     pending.write_arrays(SCANS_FILE, schema, SCANS_VERSION, description, storage, &datasets)?;
-    let rows: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
-    pending.write_table(REPORT_FILE, &rows, &Metadata::new())?;
-    let rows: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
-    pending.write_table(FAULTS_FILE, &rows, &Metadata::new())?;
-    let rows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
-    pending.write_table(WINDOWS_FILE, &rows, &Metadata::new())?;
+    let scans: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
+    pending.write_table(REPORT_FILE, &scans, &Metadata::new())?;
+    let faults: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
+    pending.write_table(FAULTS_FILE, &faults, &Metadata::new())?;
+    let windows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
+    pending.write_table(WINDOWS_FILE, &windows, &Metadata::new())?;
+    let pictures = write_pictures(&reports, ingest.fault_pictures, pending)?;
+    let document = cleaning_markdown(&scans, &faults, &windows, &pictures);
+    pending.write_document(CLEANING_FILE, &document)?;
     let mut warnings = warnings(&reports);
     warnings.extend(jump_warning(&reports));
     Ok(warnings)

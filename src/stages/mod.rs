@@ -153,6 +153,9 @@ pub enum StageError {
     /// A scan that cannot be conditioned.
     #[error(transparent)]
     Conditioning(#[from] crate::surface::ConditioningError),
+    /// The picture of the faults of a scan cannot be drawn.
+    #[error("ingest.fault_pictures: {0}")]
+    FaultPicture(#[from] crate::report::FigureError),
     /// No scan file was found.
     #[error("no scan files in [{}]: give files or folders with files (ingest.scans or --scans)", paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", "))]
     NoScans {

@@ -1,6 +1,6 @@
 //! From a scan as measured to windows on equal spacing, without faults and form.
 
-use super::faults::{FaultReport, RepeatedPositions};
+use super::faults::{FaultOverview, FaultReport, RepeatedPositions};
 use super::form::{Form, FormError, LARGEST_ORDER, RemovedForm, remove_form};
 use super::resample::{Grid, GridError, block_means, place_on_grid, points_per_cell};
 use super::window::{window_name, windows};
@@ -141,6 +141,8 @@ pub struct ConditioningReport {
     pub form: Option<RemovedForm>,
     /// The faults that were looked for, in the order of the work.
     pub faults: Vec<FaultReport>,
+    /// Where they are; none for a scan without any.
+    pub overview: Option<FaultOverview>,
     /// All windows in the order of the track.
     pub windows: Vec<WindowReport>,
 }
@@ -236,7 +238,8 @@ pub fn condition(
     let (merged, mut found) = faults::sampling(scan, conditioning);
     let (mut raw, fit) = place_on_grid(&merged)
         .map_err(|source| ConditioningError::Grid { scan: name(), source })?;
-    let removed = faults::heights(&mut raw, conditioning, &mut found);
+    let findings = faults::heights(&mut raw, conditioning);
+    found.extend(findings.reports);
 
     let points = conditioning.lateral_resolution_um.map_or(1, |um| {
         points_per_cell(raw.spacing, um / 1e6 / conditioning.samples_per_resolution)
@@ -257,8 +260,8 @@ pub fn condition(
         points_sharing_a_cell: fit.points_sharing,
         raw_spacing_um: raw.spacing * 1e6,
         largest_deviation_um: fit.largest_deviation * 1e6,
-        points_out_of_range: removed.out_of_range,
-        spikes: removed.spikes,
+        points_out_of_range: findings.out_of_range,
+        spikes: findings.spikes,
         points_per_cell: points,
         spacing_um: grid.spacing * 1e6,
         cells: grid.heights.len(),
@@ -266,6 +269,7 @@ pub fn condition(
         cells_left_out: 0,
         form,
         faults: found,
+        overview: findings.overview,
         windows: Vec::new(),
     };
     let kept = cut(&grid, conditioning, &mut report)?;

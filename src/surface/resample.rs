@@ -1,5 +1,6 @@
 //! From measured positions to equal spacing, without interpolation.
 
+use crate::numerics::statistics::least_squares_line;
 use crate::surface::RawScan;
 use statrs::statistics::{Data, OrderStatistics};
 
@@ -95,7 +96,8 @@ pub fn place_on_grid(scan: &RawScan) -> Result<(Grid, GridFit), GridError> {
 /// Origin and spacing of the grid by least squares of the positions over their counted steps.
 fn fit_grid(positions: &[f64]) -> (f64, f64) {
     // Where no point is absent the count of a position is its place in the list.
-    let (origin, spacing) = fit_line(positions, (0..positions.len()).map(|i| i as f64));
+    let (origin, spacing) =
+        least_squares_line((0..positions.len()).map(|i| i as f64), positions.iter().copied());
     let on_grid = |(i, &position): (usize, &f64)| {
         (position - origin - i as f64 * spacing).abs() <= 0.5 * spacing
     };
@@ -120,21 +122,7 @@ fn fit_grid(positions: &[f64]) -> (f64, f64) {
         }
         Some(*count)
     });
-    fit_line(positions, counts)
-}
-
-/// Least-squares line of the positions over growing counts that start at 0: intercept and slope.
-fn fit_line(positions: &[f64], counts: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let n = positions.len() as f64;
-    let mean_count = counts.clone().sum::<f64>() / n;
-    let mean_position = positions.iter().sum::<f64>() / n;
-    let (mut covariance, mut variance) = (0.0, 0.0);
-    for (position, count) in positions.iter().zip(counts) {
-        covariance += (count - mean_count) * (position - mean_position);
-        variance += (count - mean_count).powi(2);
-    }
-    let slope = covariance / variance;
-    (mean_position - slope * mean_count, slope)
+    least_squares_line(counts, positions.iter().copied())
 }
 
 /// Number of neighbouring points to average for a spacing of at most `target` metres: the whole

@@ -1,36 +1,58 @@
 //! What was cleaned from the scans, for the people who decide on it.
 
-use crate::stages::ingest::{FaultRow, ScanReportRow, WindowRow};
+use super::{FaultRow, ScanReportRow, WindowRow};
+use std::collections::BTreeMap;
 use std::fmt::Write;
+
+/// The report of cleaning as a document: `cleaning.md`.
+pub const CLEANING_FILE: &str = "cleaning.md";
 
 /// The report of a campaign as a Markdown document: for each scan its points, the faults that were
 /// found, by which criterion, what was done with them and what that means for slope and shortest
-/// waves; then the windows that were rejected. Scans without any fault share one line.
+/// waves; then the windows that were rejected. Scans with missing points and digits alone share a
+/// table, those without any fault a line. `pictures` gives the file of the picture of a scan.
 pub fn cleaning_markdown(
     scans: &[ScanReportRow],
     faults: &[FaultRow],
     windows: &[WindowRow],
+    pictures: &BTreeMap<String, String>,
 ) -> String {
     let mut text = String::from("# What was cleaned\n");
     let found = |scan: &ScanReportRow| -> Vec<&FaultRow> {
         let of_scan = |fault: &&FaultRow| fault.scan == scan.scan && fault.count > 0;
         faults.iter().filter(of_scan).collect()
     };
-    let (clean, faulty): (Vec<_>, Vec<_>) = scans
-        .iter()
-        .map(|scan| (scan, found(scan)))
-        .partition(|(scan, found)| found.is_empty() && scan.points_missing == 0);
-    for (scan, found) in &faulty {
-        section(&mut text, scan, found);
+    let mut clean = Vec::new();
+    let mut gappy = String::new();
+    for scan in scans {
+        let found = found(scan);
+        // Only what can be taken away has an effect.
+        if found.iter().any(|fault| fault.rms_slope_before.is_some()) {
+            section(&mut text, scan, &found);
+            if let Some(picture) = pictures.get(&scan.scan) {
+                let _ = write!(text, "\n![{}]({picture})\n", scan.scan);
+            }
+        } else if scan.points_missing > 0 || !found.is_empty() {
+            gappy_row(&mut gappy, scan, &found, pictures);
+        } else {
+            clean.push(scan.scan.as_str());
+        }
+    }
+    if !gappy.is_empty() {
+        text.push_str(
+            "\n## Missing points and digits\n\nThese scans have no other faults.\n\n\
+             | scan | points | spacing | without a height in the file | found | picture |\n\
+             |---|---:|---:|---:|---|---|\n",
+        );
+        text.push_str(&gappy);
     }
     if !clean.is_empty() {
-        let names: Vec<&str> = clean.iter().map(|(scan, _)| scan.scan.as_str()).collect();
         let _ = write!(
             text,
             "\n## Without faults\n\n{} of {} scans: {}\n",
             clean.len(),
             scans.len(),
-            names.join(", ")
+            clean.join(", ")
         );
     }
     let rejected: Vec<(&str, &str)> = windows
@@ -49,16 +71,39 @@ pub fn cleaning_markdown(
     text
 }
 
+fn gappy_row(
+    text: &mut String,
+    scan: &ScanReportRow,
+    faults: &[&FaultRow],
+    pictures: &BTreeMap<String, String>,
+) {
+    let found: Vec<String> =
+        faults.iter().map(|fault| format!("{} {}", fault.count, fault.fault)).collect();
+    let picture =
+        pictures.get(&scan.scan).map_or_else(String::new, |file| format!("[{file}]({file})"));
+    let _ = writeln!(
+        text,
+        "| {} | {} | {:.2} µm | {} ({:.1} %) | {} | {picture} |",
+        scan.scan,
+        scan.points_read,
+        scan.raw_spacing_um,
+        scan.points_missing,
+        missing_percent(scan),
+        found.join(", ")
+    );
+}
+
+fn missing_percent(scan: &ScanReportRow) -> f64 {
+    100.0 * scan.points_missing as f64 / scan.points_read.max(1) as f64
+}
+
 fn section(text: &mut String, scan: &ScanReportRow, faults: &[&FaultRow]) {
-    let missing = 100.0 * scan.points_missing as f64 / scan.points_read.max(1) as f64;
+    let missing = missing_percent(scan);
     let _ = write!(
         text,
         "\n## {}\n\n{} points, {:.2} µm apart; {} without a height in the file ({missing:.1} %).\n",
         scan.scan, scan.points_read, scan.raw_spacing_um, scan.points_missing
     );
-    if faults.is_empty() {
-        return;
-    }
     text.push_str(
         "\n| fault | found | share | decision | rms slope with, without | shortest waves without, \
          over with | criterion |\n|---|---:|---:|---|---:|---:|---|\n",
@@ -125,12 +170,13 @@ mod tests {
 
     #[test]
     fn faults_stand_with_their_scan_and_clean_scans_share_a_line() {
-        let scans = [scan("a", 49), scan("b", 0), scan("c", 0)];
+        let scans = [scan("a", 49), scan("b", 0), scan("c", 0), scan("d", 7)];
         let faults = [
             fault("a", "level jumps", 119),
             fault("a", "spikes", 0),
             fault("b", "spikes", 0),
             fault("c", "tilt", 0),
+            FaultRow { rms_slope_before: None, ..fault("d", "stair-steps", 5) },
         ];
         let window = |name: &str, rejected: Option<&str>| WindowRow {
             window: name.into(),
@@ -140,7 +186,9 @@ mod tests {
             rejected: rejected.map(str::to_owned),
         };
         let windows = [window("a-00", None), window("a-01", Some("30 % are missing"))];
-        let text = cleaning_markdown(&scans, &faults, &windows);
+        let pictures = BTreeMap::from([("a".to_owned(), "faults_01.svg".to_owned())]);
+        let text = cleaning_markdown(&scans, &faults, &windows, &pictures);
+        assert!(text.contains("\n![a](faults_01.svg)\n"), "{text}");
         assert!(text.contains("## a\n\n1000 points, 37.50 µm apart; 49 without"), "{text}");
         assert!(text.contains("(4.9 %)"), "{text}");
         assert!(
@@ -150,7 +198,9 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains("| spikes |"), "{text}");
-        assert!(text.contains("2 of 3 scans: b, c"), "{text}");
+        let row = "| d | 1000 | 37.50 µm | 7 (0.7 %) | 5 stair-steps |  |";
+        assert!(text.contains(row), "{text}");
+        assert!(text.contains("2 of 4 scans: b, c"), "{text}");
         assert!(text.contains("1 of 2 kept.\n- a-01: 30 % are missing"), "{text}");
     }
 }
