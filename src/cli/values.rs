@@ -46,6 +46,14 @@ pub(super) fn fraction(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A relative accuracy, from that of double precision up to a half.
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if (1e-8..=0.5).contains(&value) => Ok(value),
+        value => Err(format!("{value} is not between 1e-8 and 0.5 (0.1 % is 0.001)")),
+    }
+}
+
 /// `nm`, `um`, `mm` or `m`.
 pub(super) fn length_unit(text: &str) -> Result<LengthUnit, String> {
     one_of(text, "nm, um, mm or m")

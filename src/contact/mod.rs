@@ -16,10 +16,12 @@
 //! | [`solution`] | friction, area, separation, dissipation and residual of a solved contact |
 //! | [`area`] | the pressure that gives a wanted contact area |
 //! | [`curve`] | friction over contact area, from few solves |
+//! | [`refine`] | grids fine enough for a wanted accuracy of friction |
 
 pub mod area;
 pub mod curve;
 pub mod half_space;
+pub mod refine;
 pub mod sliding;
 pub mod solution;
 

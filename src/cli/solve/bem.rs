@@ -7,12 +7,16 @@ use std::time::Instant;
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
+use super::error_estimate::ErrorEstimate;
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{aligned, json, note, print, significant, write_file};
 use crate::cli::{CliError, values};
+use crate::contact::refine::{OnGrid, RefineError, Refined, Refinement, Watched, on_grid};
+use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactSolution, SlidingContact};
+use crate::rubber::Rubber;
 
 /// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
 const AREA_TOLERANCE: f64 = 1e-6;
@@ -21,12 +25,21 @@ const AREA_TOLERANCE: f64 = 1e-6;
 /// are then off by a fifth and more.
 const RESOLVED_SPOT: f64 = 4.0;
 
+/// Accuracy of friction without --tolerance.
+const DEFAULT_TOLERANCE: f64 = 1e-3;
+/// Of the coarsest grid; three grids make an estimate.
+const FIRST_POINTS_PER_WAVE: usize = 8;
+/// Seconds for a contact.
+const MOST_POINTS: usize = 1 << 22;
+
 const EXAMPLES: &str = "\
 Examples:
   One sine of wavelength 0.0625 mm and amplitude 0.01867 mm, the rubber of Table 2.1:
     asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3
   Two sines, the second with a phase of 1.57 rad, as JSON:
     asperity solve bem --wave 0.0625:0.01867 --wave 0.125:0.02648:1.57 --speed 10 --pressure 3.3 --json
+  Friction to a relative accuracy of 1e-5:
+    asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3 --tolerance 1e-5
   The pressure that brings 5 % of the area into contact:
     asperity solve bem --wave 0.0625:0.01867 --speed 10 --area 0.05
   A measured profile with x and z in micrometres on an elastic half-space:
@@ -55,6 +68,11 @@ pub(in crate::cli) struct Bem {
     area: Option<f64>,
     #[command(flatten)]
     material: MaterialOptions,
+    /// Relative accuracy of friction (of an elastic half-space: of the contact area): the grid is
+    /// refined until it is reached [default: 0.001; with --points or --profile the error of that
+    /// grid is estimated and reported].
+    #[arg(long, value_name = "RELATIVE", conflicts_with_all = ["points", "profile"], value_parser = values::tolerance, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
     /// Print JSON with full precision instead of a table.
     #[arg(long)]
     json: bool,
@@ -75,6 +93,7 @@ struct Summary {
     iterations: usize,
     grid_points: usize,
     seconds: f64,
+    error_estimate: Option<ErrorEstimate>,
 }
 
 impl Bem {
@@ -86,19 +105,9 @@ impl Bem {
         }
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;
         let start = Instant::now();
-        let speed = self.speed / 1e3;
-        let mut contact = SlidingContact::new(&rubber, speed, shape.period, &shape.heights)?;
-        if self.area.is_some() && contact.height_range() == 0.0 {
-            return Err(CliError::input(
-                "the profile is flat and touches everywhere at any pressure: give --pressure",
-            ));
-        }
-        let solution = match (self.pressure, self.area) {
-            (Some(pressure_mpa), _) => contact.solve(pressure_mpa * 1e6)?,
-            (None, Some(fraction)) => contact.solve_for_area(fraction, AREA_TOLERANCE)?,
-            (None, None) => return Err(CliError::input("give --pressure or --area")),
-        };
-        let summary = Summary::new(&solution, start.elapsed().as_secs_f64());
+        let refined = self.solve(&rubber, &shape)?;
+        let solution = &refined.solution;
+        let summary = Summary::new(&refined, start.elapsed().as_secs_f64());
         summary.check()?;
         let spot = points_per_spot(&solution.pressure);
         if spot < RESOLVED_SPOT {
@@ -111,10 +120,67 @@ impl Bem {
                 ),
             );
         }
+        if refined.error.is_none() {
+            note(
+                quiet,
+                format_args!(
+                    "warning: the error of this grid is not known: of coarser grids too few resolve \
+                     the contact; give more points"
+                ),
+            );
+        }
         if let Some(path) = &self.fields {
-            write_file(path, true, |out| write_fields(out, &shape, &solution))?;
+            write_file(path, true, |out| write_fields(out, &shape, solution))?;
         }
         print(&if self.json { json(&summary)? } else { summary.table() })
+    }
+
+    /// The contact, on a grid that is fine enough or on the given one.
+    fn solve(&self, rubber: &Rubber, shape: &Shape) -> Result<Refined<ContactSolution>, CliError> {
+        let solve = |points: usize| self.solve_on(rubber, shape, points);
+        let given =
+            self.shape.points.or(self.shape.profile.is_some().then_some(shape.heights.len()));
+        if let Some(points) = given {
+            return on_grid(points, *POINTS_RANGE.start(), solve, view);
+        }
+        let watched =
+            if rubber.branches.is_empty() { Watched::ContactArea } else { Watched::Friction };
+        let waves = shape.shortest_waves().unwrap_or(1);
+        let refinement = Refinement {
+            tolerance: self.tolerance.unwrap_or(DEFAULT_TOLERANCE),
+            watched,
+            first: (FIRST_POINTS_PER_WAVE * waves).next_power_of_two(),
+            most: MOST_POINTS,
+        };
+        let optional = |points: usize| match solve(points) {
+            // A small contact needs a fine grid, and so may its area.
+            Err(CliError::Failure(_)) if 2 * points <= MOST_POINTS => Ok(None),
+            solved => solved.map(Some),
+        };
+        refinement.run(optional, view).map_err(|error| match error {
+            RefineError::Solve(error) => error,
+            unreached @ RefineError::NotReached { .. } => CliError::failure(unreached.to_string()),
+        })
+    }
+
+    fn solve_on(
+        &self,
+        rubber: &Rubber,
+        shape: &Shape,
+        points: usize,
+    ) -> Result<ContactSolution, CliError> {
+        let heights = shape.heights_on(points);
+        let mut contact = SlidingContact::new(rubber, self.speed / 1e3, shape.period, &heights)?;
+        if self.area.is_some() && contact.height_range() == 0.0 {
+            return Err(CliError::input(
+                "the profile is flat and touches everywhere at any pressure: give --pressure",
+            ));
+        }
+        match (self.pressure, self.area) {
+            (Some(pressure_mpa), _) => Ok(contact.solve(pressure_mpa * 1e6)?),
+            (None, Some(fraction)) => Ok(contact.solve_for_area(fraction, AREA_TOLERANCE)?),
+            (None, None) => Err(CliError::input("give --pressure or --area")),
+        }
     }
 
     fn inputs(&self) -> [Option<&Path>; 2] {
@@ -123,8 +189,10 @@ impl Bem {
 }
 
 impl Summary {
-    fn new(solution: &ContactSolution, seconds: f64) -> Self {
+    fn new(refined: &Refined<ContactSolution>, seconds: f64) -> Self {
+        let solution = &refined.solution;
         Self {
+            error_estimate: refined.error.map(ErrorEstimate::of_grid),
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
             mean_separation_mm: solution.mean_separation * 1e3,
@@ -154,9 +222,15 @@ impl Summary {
     }
 
     fn table(&self) -> String {
+        let error = |value: fn(&ErrorEstimate) -> f64| {
+            let known = self.error_estimate.as_ref().map(value);
+            known.map_or_else(|| "unknown".into(), |error| format!("{error:.1e}"))
+        };
         aligned(&[
             ("friction coefficient", significant(self.friction_coefficient)),
+            ("estimated error", error(|estimate| estimate.total)),
             ("contact area fraction", significant(self.contact_area_fraction)),
+            ("its estimated error", error(|estimate| estimate.contact_area_fraction)),
             ("mean separation", significant(self.mean_separation_mm) + " mm"),
             ("mean pressure", significant(self.pressure_mpa) + " MPa"),
             ("residual", significant(self.residual)),
@@ -175,16 +249,25 @@ fn points_per_spot(pressure: &[f64]) -> f64 {
     touching as f64 / ends as f64
 }
 
+fn view(solution: &ContactSolution) -> OnGrid {
+    OnGrid {
+        points: solution.pressure.len(),
+        friction_coefficient: solution.friction_coefficient,
+        contact_area_fraction: solution.contact_area_fraction,
+    }
+}
+
 fn write_fields(
     out: &mut dyn Write,
     shape: &Shape,
     solution: &ContactSolution,
 ) -> std::io::Result<()> {
-    let points = shape.heights.len();
-    let mean = shape.heights.iter().sum::<f64>() / points as f64;
+    let points = solution.pressure.len();
+    let heights = shape.heights_on(points);
+    let mean = heights.iter().sum::<f64>() / points as f64;
     let spacing_mm = shape.period * 1e3 / points as f64;
     writeln!(out, "x_mm,height_mm,pressure_mpa,separation_mm")?;
-    for (i, height) in shape.heights.iter().enumerate() {
+    for (i, height) in heights.iter().enumerate() {
         let x_mm = i as f64 * spacing_mm;
         let height_mm = (height - mean) * 1e3;
         let pressure_mpa = solution.pressure[i] / 1e6;

@@ -14,7 +14,9 @@ use crate::cli::output::{json, note, print, write_file};
 use crate::cli::progress::Spinner;
 use crate::cli::{CliError, values};
 use crate::contact::SlidingContact;
+use crate::contact::refine::{OnGrid, RefineError, Refinement, Watched, on_grid};
 use crate::fem::profile::RigidProfile;
+use crate::fem::steady::solution::SteadySolution;
 use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::fem::transient::{FlowRule, TransientContact, TransientOptions};
 use crate::rubber::{Rheology, Rubber};
@@ -66,6 +68,10 @@ pub(in crate::cli) struct Fem {
     /// most 4096; of the transient route a fourth of that].
     #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     columns: Option<usize>,
+    /// Relative accuracy of friction (of an elastic block: of the contact area): the mesh is refined
+    /// until it is reached; steady route only. Without it the error of the one mesh is estimated.
+    #[arg(long, value_name = "RELATIVE", conflicts_with = "columns", value_parser = values::tolerance, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
     /// Law of the springs at finite strain.
     #[arg(long, value_name = "LAW", value_enum, default_value_t = Law::NeoHookean)]
     rheology: Law,
@@ -162,6 +168,11 @@ impl Fem {
                 "--area is found by the steady route only: give --pressure",
             ));
         }
+        if transient && self.tolerance.is_some() {
+            return Err(CliError::input(
+                "--tolerance is met by the steady route only: give --columns",
+            ));
+        }
         if transient && self.fields.is_some() {
             return Err(CliError::input(
                 "--fields are those of the steady route: leave it out, or give --series",
@@ -208,28 +219,64 @@ impl Fem {
         quiet: bool,
     ) -> Result<Summary, CliError> {
         let start = Instant::now();
-        let rheology = self.rheology.into();
-        let mut contact = SteadyContact::new(rubber, rheology, self.speed / 1e3, profile, options)?;
-        let spinner = Spinner::new(quiet, &format!("solving on {} columns", options.columns));
-        let solution = match (self.pressure, self.area) {
-            (Some(pressure_mpa), _) => contact.solve(pressure_mpa * 1e6)?,
-            (None, Some(fraction)) => {
-                contact.solve_for_area(fraction, AREA_TOLERANCE).map_err(|error| {
-                    let error = CliError::from(error);
-                    CliError::failure(format!("--area {fraction}: {error}"))
+        let waves = profile.steep_waves();
+        let least = (resolution::LEAST_COLUMNS_PER_WAVE * waves).ceil() as usize;
+        let solve = |columns: usize| {
+            let spinner = Spinner::new(quiet, &format!("solving on {columns} columns"));
+            let solution = self.steady_on(rubber, &profile, BlockOptions { columns, ..options });
+            spinner.finish();
+            solution
+        };
+        let refined = match self.tolerance {
+            None => on_grid(options.columns, least, solve, view)?,
+            Some(tolerance) => {
+                let watched = match rubber.branches.is_empty() {
+                    true => Watched::ContactArea,
+                    false => Watched::Friction,
+                };
+                let (first, most) = (least.next_power_of_two(), resolution::MOST_DEFAULT_COLUMNS);
+                let optional = |columns: usize| match solve(columns) {
+                    Err(CliError::Failure(_)) if 2 * columns <= most => Ok(None),
+                    solved => solved.map(Some),
+                };
+                let refinement = Refinement { tolerance, watched, first, most };
+                refinement.run(optional, view).map_err(|error| match error {
+                    RefineError::Solve(error) => error,
+                    unreached @ RefineError::NotReached { .. } => {
+                        CliError::failure(unreached.to_string())
+                    }
                 })?
             }
-            (None, None) => return Err(CliError::input("give --pressure or --area")),
         };
-        spinner.finish();
+        let solution = &refined.solution;
         let (friction, heat) = (solution.friction_coefficient, solution.hysteretic_friction);
         if let Some(warning) = resolution::coarse(friction, heat, solution.mean_separation) {
             note(quiet, format_args!("warning: {warning}; give more --columns"));
         }
         if let Some(path) = &self.fields {
-            write_file(path, true, |out| write_fields(out, &solution))?;
+            write_file(path, true, |out| write_fields(out, solution))?;
         }
-        Ok(Summary::steady(&solution, start.elapsed().as_secs_f64()))
+        Ok(Summary::steady(&refined, start.elapsed().as_secs_f64()))
+    }
+
+    fn steady_on(
+        &self,
+        rubber: &Rubber,
+        profile: &RigidProfile,
+        options: BlockOptions,
+    ) -> Result<SteadySolution, CliError> {
+        let (rheology, speed) = (self.rheology.into(), self.speed / 1e3);
+        let mut contact = SteadyContact::new(rubber, rheology, speed, profile.clone(), options)?;
+        match (self.pressure, self.area) {
+            (Some(pressure_mpa), _) => Ok(contact.solve(pressure_mpa * 1e6)?),
+            (None, Some(fraction)) => {
+                contact.solve_for_area(fraction, AREA_TOLERANCE).map_err(|error| {
+                    let error = CliError::from(error);
+                    CliError::failure(format!("--area {fraction}: {error}"))
+                })
+            }
+            (None, None) => Err(CliError::input("give --pressure or --area")),
+        }
     }
 
     fn transient(
@@ -283,6 +330,14 @@ impl Fem {
             note(quiet, format_args!("warning: {warning}; {advice}"));
         }
         Ok(summary)
+    }
+}
+
+fn view(solution: &SteadySolution) -> OnGrid {
+    OnGrid {
+        points: solution.elements[0],
+        friction_coefficient: solution.friction_coefficient,
+        contact_area_fraction: solution.contact_area_fraction,
     }
 }
 

@@ -4,7 +4,9 @@ use std::io::Write;
 
 use serde::Serialize;
 
+use super::error_estimate::ErrorEstimate;
 use crate::cli::output::{aligned, significant};
+use crate::contact::refine::Refined;
 use crate::fem::steady::solution::SteadySolution;
 use crate::fem::transient::{Sample, TransientSolution};
 
@@ -27,11 +29,15 @@ pub(super) struct Summary {
     /// Largest less smallest friction of the averaged periods; transient route only.
     #[serde(skip_serializing_if = "Option::is_none")]
     friction_oscillation: Option<f64>,
+    /// None where coarser meshes do not resolve the contact, and for the transient route.
+    error_estimate: Option<ErrorEstimate>,
 }
 
 impl Summary {
-    pub(super) fn steady(solution: &SteadySolution, seconds: f64) -> Self {
+    pub(super) fn steady(refined: &Refined<SteadySolution>, seconds: f64) -> Self {
+        let solution = &refined.solution;
         Self {
+            error_estimate: refined.error.map(ErrorEstimate::of_grid),
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
             mean_separation_mm: solution.mean_separation * 1e3,
@@ -66,6 +72,7 @@ impl Summary {
             rows: elements[1],
             hysteretic_friction: friction.mean * heat,
             friction_oscillation: Some(friction.range),
+            error_estimate: None,
         }
     }
 
@@ -82,6 +89,9 @@ impl Summary {
             ("mean separation", significant(self.mean_separation_mm) + " mm"),
             ("mean pressure", significant(self.pressure_mpa) + " MPa"),
         ];
+        if let Some(error) = &self.error_estimate {
+            lines.insert(1, ("estimated error", format!("{:.1e}", error.total)));
+        }
         if let Some(oscillation) = self.friction_oscillation {
             lines.insert(1, ("its oscillation", significant(oscillation)));
         }

@@ -1,6 +1,7 @@
 //! `asperity solve`: a single contact problem.
 
 mod bem;
+mod error_estimate;
 mod fem;
 mod fem_output;
 mod material;

@@ -8,12 +8,12 @@ use crate::fem::profile::RigidProfile;
 /// of the limit for usual areas.
 const DEFAULT_COLUMNS_PER_WAVE: f64 = 64.0;
 /// More columns than this are not chosen for a user: what took a minute with 1024 takes hours.
-const MOST_DEFAULT_COLUMNS: usize = 4096;
+pub(super) const MOST_DEFAULT_COLUMNS: usize = 4096;
 /// From here on a contact takes minutes.
 const MANY_COLUMNS: usize = 1024;
 /// Fewer columns on the shortest wave leave contacts of one or two nodes, whose friction is
 /// that of the mesh.
-const LEAST_COLUMNS_PER_WAVE: f64 = 8.0;
+pub(super) const LEAST_COLUMNS_PER_WAVE: f64 = 8.0;
 /// Below this, friction is off by 10 % and more.
 const FEW_COLUMNS_PER_WAVE: f64 = 16.0;
 /// Fewer samples cannot tell a wave from a longer one.

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args};
 
 use super::profile_file::read_profile;
 use crate::cli::{CliError, values};
-use crate::contact::sliding::POINTS_RANGE;
+use crate::contact::sliding::{POINTS_RANGE, resample};
 use crate::scans::description::LengthUnit;
 use crate::surface::{Wave, wave};
 
@@ -41,8 +41,8 @@ pub(super) struct ShapeOptions {
     /// Unit of x and z in --profile: nm, um, mm or m; never guessed.
     #[arg(long, value_name = "UNIT", requires = "profile", conflicts_with = "waves", value_parser = values::length_unit)]
     profile_unit: Option<LengthUnit>,
-    /// Grid points over the period, 8 to 16777216 [default: the points of --profile; else the power of two
-    /// with 64 or more on the shortest wave, at least 1024].
+    /// Grid points over the period, 8 to 16777216 [default: as many as --tolerance needs; those of
+    /// --profile].
     #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     pub(super) points: Option<usize>,
 }
@@ -58,6 +58,24 @@ pub(super) struct Shape {
     pub(super) waves: Vec<Wave>,
     /// What the user should know about it.
     pub(super) warning: Option<String>,
+}
+
+impl Shape {
+    /// Heights in m on another number of points: the sines there, or every second, fourth ... point
+    /// of a profile.
+    pub(super) fn heights_on(&self, points: usize) -> Vec<f64> {
+        if self.waves.is_empty() {
+            resample(&self.heights, points)
+        } else {
+            wave::sample(&self.waves, self.period, points)
+        }
+    }
+
+    /// Number of the shortest waves in the period; none for a profile.
+    pub(super) fn shortest_waves(&self) -> Option<usize> {
+        let counts = self.waves.iter().map(|wave| (self.period / wave.wavelength).round() as usize);
+        counts.max()
+    }
 }
 
 impl ShapeOptions {
