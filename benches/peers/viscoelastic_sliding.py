@@ -12,7 +12,7 @@ the friction of a period no longer changes, then the step is halved, going on fr
 those of the whole way: larger steps first reach the steady state sooner than small steps from rest. On the same
 points both have the same error of the grid, to which the march adds that of its steps; it is stopped when its
 error is at most twice asperity's. The errors are against asperity's friction on 65536 points; at the end a march
-on 4096 points with a tight tolerance, extrapolated to steps of no length and not timed, checks that (two minutes).
+on 4096 points with a tight tolerance, extrapolated to steps of no length and not timed, checks that (some minutes).
 """
 
 import math
