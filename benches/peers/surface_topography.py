@@ -7,31 +7,16 @@ Both programs run on one thread and take turns, and the medians of the rounds ar
 the same random self-affine line (Hurst exponent 0.65) without gaps.
 """
 
-import os
 import statistics
 import subprocess
 import sys
 import time
-import venv
-from pathlib import Path
 
-VERSION = "1.27.1"
+from environment import FOLDER, ROOT, VERSIONS, inside_environment
+
+VERSION = VERSIONS["SurfaceTopography"]
 POINTS, SPACING = 160_000, 6.25e-6
 ROUNDS, REPEATS = 5, 9
-ROOT = Path(__file__).resolve().parents[2]
-FOLDER = ROOT / "target" / "peers"
-
-
-def inside_environment():
-    """Starts this file again with SurfaceTopography installed, unless it is."""
-    python = FOLDER / "venv" / "bin" / "python"
-    if Path(sys.prefix) == FOLDER / "venv":
-        return
-    if not python.exists():
-        venv.create(FOLDER / "venv", with_pip=True)
-    subprocess.run([python, "-m", "pip", "install", "-q", f"SurfaceTopography=={VERSION}"], check=True)
-    os.environ.update({name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS")})
-    os.execv(python, [python, __file__])
 
 
 def self_affine_line(numpy):
