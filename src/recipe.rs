@@ -18,6 +18,11 @@ use std::path::{Path, PathBuf};
 pub struct Recipe {
     /// What the run is about, in one line.
     pub title: String,
+    /// Wanted relative accuracy of the averaged friction, between 1e-4 and 0.5. A quarter each goes to
+    /// the grids (`bem.grid_tolerance`) and to interpolation (`bem.tolerance`, `micro.tolerance`), which
+    /// the recipe then leaves out; the tables warn where the realisations are too few for the rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
     /// Line scans and how to read and condition them. Without this section the waves must stand
     /// in `approximate.given`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -183,7 +188,8 @@ impl Recipe {
             source: Box::new(source),
         })?;
         recipe
-            .check()
+            .share_tolerance()
+            .and_then(|()| recipe.check())
             .map_err(|violation| RecipeError::Value { path: path.to_owned(), violation })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
@@ -200,6 +206,43 @@ impl Recipe {
             published.file = folder.join(&published.file);
         }
         Ok(recipe)
+    }
+
+    /// Hands the wanted accuracy to the stages, unless some of them have one of their own.
+    fn share_tolerance(&mut self) -> Result<(), Violation> {
+        let Some(tolerance) = self.tolerance else { return Ok(()) };
+        let own = self
+            .bem
+            .as_ref()
+            .is_some_and(|bem| bem.tolerance.is_some() || bem.grid_tolerance.is_some());
+        let alone = "without bem.tolerance and bem.grid_tolerance, which follow from it";
+        demand(!own, "tolerance", tolerance, alone)?;
+        self.set_tolerance(tolerance)
+    }
+
+    /// Asks for a relative accuracy of the averaged friction, whatever the recipe asks for.
+    ///
+    /// # Errors
+    /// [`Violation::Demand`] for one that is not between 1e-4 and 0.5, and for the study of one sine.
+    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Violation> {
+        demand((1e-4..=0.5).contains(&tolerance), "tolerance", tolerance, "between 1e-4 and 0.5")?;
+        let chain = self.sinusoid.is_none();
+        demand(
+            chain,
+            "tolerance",
+            tolerance,
+            "no [sinusoid], whose solves have keys of their own",
+        )?;
+        let share = tolerance / 4.0;
+        if let Some(bem) = &mut self.bem {
+            (bem.tolerance, bem.grid_tolerance) = (Some(share), Some(share));
+        }
+        if let Some(micro) = &mut self.micro {
+            micro.tolerance = share;
+        }
+        self.tables.tolerance = Some(tolerance);
+        self.tolerance = Some(tolerance);
+        Ok(())
     }
 
     /// What the recipe asks for.

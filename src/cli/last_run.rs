@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CliError;
 use super::output::{json, write_file};
-use super::recipe_options::with_scans;
+use super::recipe_options::{with_scans, with_tolerance};
 use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::stages::Stage;
@@ -22,15 +22,22 @@ pub(super) struct LastRun {
     recipe: PathBuf,
     /// Those of the command line.
     scans: Vec<PathBuf>,
+    /// That of the command line.
+    #[serde(default)]
+    tolerance: Option<f64>,
 }
 
 impl LastRun {
     /// # Errors
     /// [`CliError::Failure`] if the working folder is not known.
-    pub(super) fn new(recipe: &Path, scans: &[PathBuf]) -> Result<Self, CliError> {
+    pub(super) fn new(
+        recipe: &Path,
+        scans: &[PathBuf],
+        tolerance: Option<f64>,
+    ) -> Result<Self, CliError> {
         let absolute = |path: &Path| std::path::absolute(path).map_err(CliError::failure);
         let scans = scans.iter().map(|path| absolute(path)).collect::<Result<_, _>>()?;
-        Ok(Self { recipe: absolute(recipe)?, scans })
+        Ok(Self { recipe: absolute(recipe)?, scans, tolerance })
     }
 
     /// # Errors
@@ -51,6 +58,7 @@ impl LastRun {
         let states = Recipe::read(&self.recipe)
             .map_err(CliError::from)
             .and_then(|read| with_scans(read, &self.recipe, &self.scans))
+            .and_then(|read| with_tolerance(read, self.tolerance))
             .and_then(|read| Ok(pipeline::status(&read, out)?));
         let states = match states {
             Ok(states) => states,

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::CliError;
 use super::last_run::LastRun;
+use super::{CliError, values};
 use crate::pipeline::PipelineError;
 use crate::recipe::{Recipe, RecipeError};
 use crate::stages::StageError;
@@ -19,6 +19,9 @@ pub(super) struct RecipeOptions {
     /// section [ingest.text] says.
     #[arg(long, value_name = "PATH", num_args = 1..)]
     scans: Vec<PathBuf>,
+    /// Relative accuracy of the averaged friction, in place of what the recipe asks for.
+    #[arg(long, value_name = "RELATIVE", value_parser = values::tolerance, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
     /// Run folder for all results; runs/NAME for the recipe NAME.toml if not given.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -30,7 +33,8 @@ impl RecipeOptions {
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn recipe(&self) -> Result<Recipe, CliError> {
-        with_scans(Recipe::read(&self.recipe)?, &self.recipe, &self.scans)
+        let recipe = with_scans(Recipe::read(&self.recipe)?, &self.recipe, &self.scans)?;
+        with_tolerance(recipe, self.tolerance)
     }
 
     /// What was given, to be kept with the results.
@@ -38,7 +42,7 @@ impl RecipeOptions {
     /// # Errors
     /// [`CliError::Failure`].
     pub(super) fn last_run(&self) -> Result<LastRun, CliError> {
-        LastRun::new(&self.recipe, &self.scans)
+        LastRun::new(&self.recipe, &self.scans, self.tolerance)
     }
 
     /// The run folder.
@@ -66,6 +70,22 @@ pub(super) fn with_scans(
             )));
         };
         ingest.scans = scans.to_vec();
+    }
+    Ok(recipe)
+}
+
+/// The recipe with another accuracy, if one is given.
+///
+/// # Errors
+/// [`CliError::Input`] if the recipe cannot have it.
+pub(super) fn with_tolerance(
+    mut recipe: Recipe,
+    tolerance: Option<f64>,
+) -> Result<Recipe, CliError> {
+    if let Some(tolerance) = tolerance {
+        recipe
+            .set_tolerance(tolerance)
+            .map_err(|violation| CliError::input(format!("--{violation}")))?;
     }
     Ok(recipe)
 }

@@ -11,6 +11,8 @@ pub struct CurvePoint {
     pub contact_area_fraction: f64,
     /// Friction coefficient.
     pub friction_coefficient: f64,
+    /// Its estimated error by the grid, absolute; none if not known.
+    pub discretisation_error: Option<f64>,
 }
 
 /// Friction at one of the wanted contact area fractions.
@@ -24,6 +26,9 @@ pub struct CurveValue {
     pub friction_coefficient: f64,
     /// Estimated error of `friction_coefficient` by interpolation, absolute.
     pub interpolation_error: f64,
+    /// The larger of the errors by the grid of the two points that it lies between; none if one of
+    /// them is not known.
+    pub discretisation_error: Option<f64>,
 }
 
 /// Why a curve could not be found.
@@ -209,6 +214,10 @@ where
                 mean_pressure: pressure.at(at).exp(),
                 friction_coefficient: friction.at(at),
                 interpolation_error: if resolved { between } else { f64::INFINITY },
+                discretisation_error: self.points[below]
+                    .discretisation_error
+                    .zip(self.points[above].discretisation_error)
+                    .map(|(below, above)| below.max(above)),
             }
         };
         targets.iter().map(value).collect()

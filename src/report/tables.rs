@@ -57,7 +57,7 @@ impl FrictionTable {
     fn header(&self) -> Vec<String> {
         let mut header = vec!["area_fraction".to_owned()];
         header.extend((1..=self.realisations()).map(|k| format!("realisation_{k}")));
-        let rest = ["average", "standard_deviation", "confidence_95"];
+        let rest = ["average", "standard_deviation", "confidence_95", "error_estimate"];
         header.extend(rest.map(str::to_owned));
         header
     }
@@ -71,6 +71,7 @@ impl FrictionTable {
             cells.push(format!("{:.5}", row.mean));
             cells.push(optional(row.standard_deviation));
             cells.push(optional(row.confidence_95));
+            cells.push(optional(row.error_estimate));
             cells
         })
     }
@@ -105,6 +106,8 @@ pub fn data_frame(rows: &[FrictionRow]) -> Result<DataFrame, PolarsError> {
     columns.push(optional("standard_deviation", |row| row.standard_deviation));
     columns.push(optional("confidence_95", |row| row.confidence_95));
     columns.push(column("interpolation_error", |row| row.interpolation_error));
+    columns.push(optional("discretisation_error", |row| row.discretisation_error));
+    columns.push(optional("error_estimate", |row| row.error_estimate));
     columns.push(column("pressure_mpa", |row| row.pressure_mpa));
     DataFrame::new(rows.len(), columns)
 }
@@ -166,8 +169,8 @@ pub fn latex(tables: &[FrictionTable], rubber: &str) -> String {
         let n = table.realisations();
         let mut header = vec!["$A_c/A_0$".to_owned()];
         header.extend((1..=n).map(|k| k.to_string()));
-        header.extend(["average", "s.d.", "95\\,\\%"].map(str::to_owned));
-        let columns = format!("S[table-format=1.3]{}", "S[table-format=1.5]".repeat(n + 3));
+        header.extend(["average", "s.d.", "95\\,\\%", "error"].map(str::to_owned));
+        let columns = format!("S[table-format=1.3]{}", "S[table-format=1.5]".repeat(n + 4));
         let braced: Vec<String> = header.iter().map(|cell| format!("{{{cell}}}")).collect();
         let _ = writeln!(text, "% needs the packages booktabs and siunitx");
         let _ = writeln!(text, "\\begin{{table}}\n\\centering");
@@ -215,6 +218,8 @@ mod tests {
             standard_deviation: (realisations.len() > 1).then_some(0.1),
             confidence_95: None,
             interpolation_error: 0.0,
+            discretisation_error: None,
+            error_estimate: Some(0.25),
             pressure_mpa: 1.0,
             shortest_reliable_wavelength_mm: None,
         }
@@ -228,7 +233,10 @@ mod tests {
         assert_eq!(tables.len(), 2);
         let text = markdown(&tables, "50 % silica_x");
         assert!(text.contains("| area_fraction | realisation_1 | realisation_2 | average |"));
-        assert!(text.contains("| 0.002 | 0.70100 | 0.53646 | 0.50000 | 0.10000 |  |"), "{text}");
+        assert!(
+            text.contains("| 0.002 | 0.70100 | 0.53646 | 0.50000 | 0.10000 |  | 0.25000 |"),
+            "{text}"
+        );
         let text = latex(&tables, "50 % silica_x");
         assert!(text.contains("rubber 50 \\% silica\\_x"), "{text}");
         assert_eq!(text.matches("\\toprule").count(), 2);
@@ -238,7 +246,7 @@ mod tests {
     #[test]
     fn the_data_frame_leaves_absent_realisations_empty() {
         let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
-        assert_eq!(frame.shape(), (2, 11));
+        assert_eq!(frame.shape(), (2, 13));
         assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
     }
 }

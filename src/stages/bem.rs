@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Section `[bem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,9 +33,14 @@ pub struct Bem {
     /// Contact area fractions at which friction is wanted, ascending.
     #[serde(default = "published_area_fractions")]
     pub area_fractions: Vec<f64>,
-    /// Relative accuracy of friction by interpolation between solved pressures.
-    #[serde(default = "default_tolerance")]
-    pub tolerance: f64,
+    /// Relative accuracy of friction by interpolation between solved pressures; 1e-3 by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Relative accuracy of friction by the grid: every pressure is solved on doubled grids until their
+    /// differences show it. Not set: one grid for all, as the next two keys say, whose error is
+    /// estimated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grid_tolerance: Option<f64>,
     /// Grid points per shortest wavelength, at least; the grid is the next power of two.
     #[serde(default = "default_points")]
     pub points_per_shortest_wavelength: u32,
@@ -51,10 +56,6 @@ pub struct Bem {
 
 fn published_area_fractions() -> Vec<f64> {
     vec![0.002, 0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.1]
-}
-
-fn default_tolerance() -> f64 {
-    1e-3
 }
 
 fn default_points() -> u32 {
@@ -94,16 +95,21 @@ impl Bem {
             fields,
             "within the range of bem.area_fractions",
         )?;
-        let tolerance = self.tolerance;
-        demand(
-            (1e-6..=0.1).contains(&tolerance),
-            "bem.tolerance",
-            tolerance,
-            "between 1e-6 and 0.1",
-        )?;
+        for (key, tolerance) in [
+            ("bem.tolerance", Some(self.interpolation_tolerance())),
+            ("bem.grid_tolerance", self.grid_tolerance),
+        ] {
+            let valid = tolerance.is_none_or(|tolerance| (1e-6..=0.2).contains(&tolerance));
+            demand(valid, key, tolerance, "between 1e-6 and 0.2")?;
+        }
         let points = self.points_per_shortest_wavelength;
         let key = "bem.points_per_shortest_wavelength";
         demand((4..=65536).contains(&points), key, points, "4 to 65536")
+    }
+
+    /// Relative accuracy of friction by interpolation.
+    pub fn interpolation_tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(1e-3)
     }
 
     /// The parameters with the rubber itself in place of its file: what the results depend on.
@@ -164,6 +170,10 @@ pub struct SolveRow {
     /// Mean separation.
     #[schemars(extend("unit" = "mm"))]
     pub mean_separation_mm: f64,
+    /// Estimated error of the friction coefficient by the grid, absolute; absent where coarser grids
+    /// do not resolve the contact.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
     /// Residual of the contact conditions, relative.
     #[schemars(extend("unit" = "1"))]
     pub residual: f64,
@@ -178,7 +188,7 @@ pub struct SolveRow {
 
 impl Row for SolveRow {
     const SCHEMA: &'static str = "asperity.bem.solves";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Friction of one realisation at one wanted contact area.
@@ -203,11 +213,15 @@ pub struct CurveRow {
     /// Estimated error of the friction coefficient by interpolation, absolute.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
+    /// The larger of the errors by the grid of the two solves that the friction lies between; absent
+    /// where one of them is not known.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
 }
 
 impl Row for CurveRow {
     const SCHEMA: &'static str = "asperity.bem.curves";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.
@@ -318,6 +332,7 @@ fn one_curve(
         pressure_mpa: value.mean_pressure / 1e6,
         friction_coefficient: value.friction_coefficient,
         interpolation_error: value.interpolation_error,
+        discretisation_error: value.discretisation_error,
     };
     let values = values.iter().map(row).collect();
     Ok(CurveResult { solves: curve.into_solves(), values, fields })

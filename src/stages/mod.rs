@@ -350,6 +350,14 @@ pub enum SolveError {
     /// A local law.
     #[error(transparent)]
     Law(#[from] crate::multiscale::LawError),
+    /// No grid gives the wanted accuracy.
+    #[error("p = {pressure:e} Pa: {reason} (tolerance, bem.grid_tolerance, bem.area_fractions)")]
+    Accuracy {
+        /// Mean pressure in Pa.
+        pressure: f64,
+        /// What was reached.
+        reason: String,
+    },
     /// The store of solves.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),

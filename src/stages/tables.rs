@@ -1,5 +1,6 @@
 //! tables: friction over contact area, averaged over the realisations.
 
+mod accuracy;
 mod models;
 mod theories;
 
@@ -13,6 +14,7 @@ use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
+use accuracy::missed;
 use models::comparisons;
 pub use models::{MODELS_FILE, ModelRow};
 use schemars::JsonSchema;
@@ -22,7 +24,7 @@ use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -40,6 +42,10 @@ pub struct Tables {
     /// What these theories leave to be chosen.
     #[serde(skip_serializing_if = "TheoryConstants::is_default")]
     pub theory_constants: TheoryConstants,
+    /// Wanted relative accuracy of the averages, set by the key `tolerance` of the recipe: averages that
+    /// miss it are warned of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
 }
 
 impl Tables {
@@ -148,6 +154,14 @@ pub struct FrictionRow {
     /// Largest estimated error of a realisation by interpolation.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
+    /// Largest estimated error of a realisation by the grid; absent where it is not known, as for
+    /// `hybrid` and `fem`, whose meshes are not refined in a run.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
+    /// Sum of the statistical error, which is `confidence_95`, the interpolation error and the
+    /// discretisation error; absent where one of them is not known.
+    #[schemars(extend("unit" = "1"))]
+    pub error_estimate: Option<f64>,
     /// Mean pressure averaged over the realisations.
     #[schemars(extend("unit" = "MPa"))]
     pub pressure_mpa: f64,
@@ -160,7 +174,7 @@ pub struct FrictionRow {
 
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
@@ -251,7 +265,7 @@ pub fn run(
         rows.extend(average(FEM, complete(values, realisations(&bem))));
     }
     let (theories, constants) = (&parameters.theories, &parameters.theory_constants);
-    let warnings = constants.warnings(theories);
+    let mut warnings = constants.warnings(theories);
     if !theories.is_empty() {
         let predictions = predictions(theories, constants, rubber, &half_space, run)?;
         for of_one in predictions.chunk_by(|a, b| a.model == b.model) {
@@ -262,6 +276,7 @@ pub fn run(
     let (_, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
     let reliable = metadata.get(RELIABLE_KEY).and_then(|mm| mm.parse::<f64>().ok());
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
+    warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
     if models.hybrid || models.fem || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
@@ -320,6 +335,7 @@ struct Value {
     pressure_mpa: f64,
     friction_coefficient: f64,
     interpolation_error: f64,
+    discretisation_error: Option<f64>,
 }
 
 impl From<CurveRow> for Value {
@@ -332,6 +348,7 @@ impl From<CurveRow> for Value {
             pressure_mpa: row.pressure_mpa,
             friction_coefficient: row.friction_coefficient,
             interpolation_error: row.interpolation_error,
+            discretisation_error: row.discretisation_error,
         }
     }
 }
@@ -346,6 +363,7 @@ impl From<FemCurveRow> for Value {
             pressure_mpa: row.pressure_mpa,
             friction_coefficient: row.friction_coefficient,
             interpolation_error: row.interpolation_error,
+            discretisation_error: None,
         }
     }
 }
@@ -359,6 +377,7 @@ fn value_of(row: &HybridRow) -> Option<Value> {
         pressure_mpa: row.pressure_mpa,
         friction_coefficient: row.friction_coefficient?,
         interpolation_error: row.interpolation_error,
+        discretisation_error: None,
     })
 }
 
@@ -395,6 +414,13 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
     let estimate = MeanEstimate::of(&realisations);
     let present = |value: f64| value.is_finite().then_some(value);
     let first = &curves[0];
+    let largest = |error: fn(&Value) -> Option<f64>| {
+        curves.iter().map(error).try_fold(0.0_f64, |most, error| Some(most.max(error?)))
+    };
+    let interpolation_error = curves.iter().map(|c| c.interpolation_error).fold(0.0, f64::max);
+    let discretisation_error = largest(|curve| curve.discretisation_error);
+    let statistical_error = present(estimate.confidence_95);
+    let solved = discretisation_error.map(|error| error + interpolation_error);
     FrictionRow {
         model: model.into(),
         waves: first.waves,
@@ -403,8 +429,12 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
         realisations,
         mean: estimate.mean,
         standard_deviation: present(estimate.standard_deviation),
-        confidence_95: present(estimate.confidence_95),
-        interpolation_error: curves.iter().map(|c| c.interpolation_error).fold(0.0, f64::max),
+        confidence_95: statistical_error,
+        interpolation_error,
+        discretisation_error,
+        error_estimate: solved
+            .zip(statistical_error)
+            .map(|(solved, statistical)| solved + statistical),
         pressure_mpa: curves.iter().map(|c| c.pressure_mpa).sum::<f64>() / curves.len() as f64,
         shortest_reliable_wavelength_mm: None,
     }
@@ -423,6 +453,7 @@ mod tests {
             pressure_mpa: friction,
             friction_coefficient: friction,
             interpolation_error: friction / 1e3,
+            discretisation_error: (realisation < 9).then_some(friction / 2e3),
         }
     }
 
@@ -452,6 +483,15 @@ mod tests {
         // t(0.975, 1) = 12.7062 in every table.
         let expected = 12.7062 * 2.0_f64.sqrt() / 2.0_f64.sqrt();
         approx::assert_relative_eq!(rows[1].confidence_95.unwrap(), expected, max_relative = 1e-5);
+        // Largest of grid 1.5e-3, largest of interpolation 3e-3, statistics.
+        approx::assert_relative_eq!(
+            rows[1].error_estimate.unwrap(),
+            4.5e-3 + rows[1].confidence_95.unwrap(),
+            max_relative = 1e-12
+        );
         assert_eq!((rows[2].waves, rows[2].confidence_95), (9, None));
+        assert_eq!((rows[2].discretisation_error, rows[2].error_estimate), (Some(3.5e-3), None));
+        let unknown = row(BEM, &[curve(8, 1, 0.1, 1.0), curve(8, 9, 0.1, 1.1)]);
+        assert_eq!((unknown.discretisation_error, unknown.error_estimate), (None, None));
     }
 }

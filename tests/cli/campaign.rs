@@ -255,8 +255,8 @@ fn exports_are_complete_or_refused() {
     assert!(message.contains("none/friction.md"), "{message}");
 
     let csv = export("out --format csv --speed 50").result();
-    let header =
-        "area_fraction,realisation_1,realisation_2,average,standard_deviation,confidence_95";
+    let header = "area_fraction,realisation_1,realisation_2,average,standard_deviation,\
+                  confidence_95,error_estimate";
     assert_eq!(csv.lines().next(), Some(header));
     assert_eq!(csv.lines().count(), 1 + 3);
     for (format, start) in [("markdown", ""), ("latex", ""), ("svg", "<svg")] {

@@ -8,6 +8,8 @@
 #[allow(dead_code)]
 mod surfaces;
 
+mod estimate;
+
 use asperity::contact::{ContactSolution, SlidingContact};
 use asperity::reference::Westergaard;
 use asperity::rubber::Rubber;

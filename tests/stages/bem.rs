@@ -142,3 +142,59 @@ fn fields_are_kept_at_the_wanted_areas() {
         assert!((area - 0.1).abs() < 0.02, "{area}");
     }
 }
+
+#[test]
+fn a_wanted_accuracy_refines_the_grids_and_is_kept() {
+    let campaign = Campaign::new();
+    campaign.edit("recipe.toml", "tolerance = 5e-3\npoints_per_shortest_wavelength = 16", "");
+    let text = campaign.read("recipe.toml");
+    let wanted = |tolerance: f64| {
+        campaign.write("recipe.toml", &format!("tolerance = {tolerance}\n{text}"));
+        let out = campaign.path(&format!("out_{tolerance}"));
+        run(&recipe(&campaign), &out);
+        let view = RunView::of(out);
+        let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+        let (solves, _) = view.read_table::<SolveRow>("bem", SOLVES_FILE).unwrap();
+        (curves, solves.iter().map(|solve| solve.grid_points).sum::<u64>(), view)
+    };
+    let (coarse, points, view) = wanted(0.2);
+    let (fine, more_points, _) = wanted(2e-3);
+    assert!(points < more_points, "{points} and {more_points}");
+    for (coarse, fine) in coarse.iter().zip(&fine) {
+        let friction = coarse.friction_coefficient;
+        let error = coarse.interpolation_error + coarse.discretisation_error.unwrap();
+        assert!(error <= 0.5 * 0.2 * friction, "{coarse:?}");
+        assert!((friction - fine.friction_coefficient).abs() <= error, "{coarse:?} {fine:?}");
+    }
+    // Two realisations are far from two in a thousand, and the tables say so.
+    let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    for row in &rows {
+        let parts = row.confidence_95.unwrap() + row.interpolation_error;
+        assert_eq!(
+            row.error_estimate,
+            Some(
+                row.discretisation_error.unwrap()
+                    + row.interpolation_error
+                    + row.confidence_95.unwrap()
+            )
+        );
+        assert!(row.error_estimate.unwrap() > parts);
+    }
+    let fine = RunView::of(campaign.path("out_0.002"));
+    let warnings = fine.stage_manifest("tables").unwrap().unwrap().warnings;
+    assert!(warnings.iter().any(|w| w.contains("exceeds the tolerance 0.002")), "{warnings:?}");
+}
+
+#[test]
+fn an_accuracy_beside_those_that_follow_from_it_is_refused() {
+    let campaign = Campaign::new();
+    let text = campaign.read("recipe.toml");
+    campaign.write("recipe.toml", &format!("tolerance = 0.01\n{text}"));
+    let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
+    assert!(message.contains("tolerance = 0.01, wanted: without bem.tolerance"), "{message}");
+    campaign.edit("recipe.toml", "tolerance = 5e-3\n", "");
+    let text = campaign.read("recipe.toml").replace("tolerance = 0.01\n", "");
+    campaign.write("recipe.toml", &format!("tolerance = 2\n{text}"));
+    let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
+    assert!(message.contains("tolerance = 2") && message.contains("1e-4 and 0.5"), "{message}");
+}

@@ -3,6 +3,7 @@
 use super::{Bem, SolveRow};
 use crate::artifact::{ArrayDataset, Attribute, Digest, SolveStore};
 use crate::contact::curve::{CurveError, friction_curve};
+use crate::contact::refine::{OnGrid, RefineError, Refinement, Watched, on_grid};
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
 use crate::rubber::Rubber;
@@ -19,6 +20,10 @@ use std::time::Instant;
 /// same problem gives another number.
 const SOLVER_REVISION: u32 = 2;
 
+/// Of the coarsest grid where an accuracy is asked for; three grids make an estimate.
+const FIRST_POINTS_PER_WAVE: u32 = 8;
+/// No grid is finer where an accuracy is asked for.
+const MOST_POINTS: usize = 1 << 22;
 /// The grid may be refined this many times for small contacts.
 const MOST_REFINEMENTS: u32 = 4;
 
@@ -28,7 +33,11 @@ pub(super) struct Curve<'a> {
     surface: &'a Surface,
     speed_mm_s: f64,
     fewest_contact_points: f64,
+    grid_tolerance: Option<f64>,
+    /// Points of the one grid without a tolerance.
     base_points: usize,
+    /// Points of the coarsest grid with one.
+    first_points: usize,
     period: f64,
     store: &'a SolveStore,
     interrupted: &'a AtomicBool,
@@ -57,14 +66,17 @@ impl<'a> Curve<'a> {
         let present = || surface.profile.iter().filter(|wave| wave.amplitude != 0.0);
         let shortest = present().map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
         let period = surface.profile.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let per_wave = f64::from(parameters.points_per_shortest_wavelength);
-        let base_points = ((per_wave * period / shortest).round() as usize).next_power_of_two();
+        let points = |per_wave: u32| {
+            ((f64::from(per_wave) * period / shortest).round() as usize).next_power_of_two()
+        };
         Self {
             rubber,
             surface,
             speed_mm_s,
             fewest_contact_points: f64::from(parameters.fewest_contact_points),
-            base_points,
+            grid_tolerance: parameters.grid_tolerance,
+            base_points: points(parameters.points_per_shortest_wavelength),
+            first_points: points(FIRST_POINTS_PER_WAVE),
             period,
             store,
             interrupted,
@@ -80,7 +92,7 @@ impl<'a> Curve<'a> {
     ) -> Result<(Vec<CurveValue>, Vec<FieldSolution>), CurveError<SolveError>> {
         let guess = self.first_guess(parameters.area_fractions[0]);
         let curve = |targets: &[f64], this: &mut Self| {
-            friction_curve(targets, parameters.tolerance, guess, |p| this.point(p))
+            friction_curve(targets, parameters.interpolation_tolerance(), guess, |p| this.point(p))
         };
         let values = curve(&parameters.area_fractions, self)?;
         if parameters.field_area_fractions.is_empty() {
@@ -115,16 +127,43 @@ impl<'a> Curve<'a> {
 
     /// One pressure, on a grid that is fine enough for its contact.
     fn point(&mut self, pressure: f64) -> Result<CurvePoint, SolveError> {
+        let refined = match self.grid_tolerance {
+            Some(tolerance) => {
+                let refinement = Refinement {
+                    tolerance,
+                    watched: Watched::Friction,
+                    first: self.first_points,
+                    most: MOST_POINTS,
+                };
+                let solve = |points| self.solve(pressure, points).map(Some);
+                refinement.run(solve, on_its_grid).map_err(|error| match error {
+                    RefineError::Solve(error) => error,
+                    unreached @ RefineError::NotReached { .. } => {
+                        SolveError::Accuracy { pressure, reason: unreached.to_string() }
+                    }
+                })?
+            }
+            None => {
+                let points = self.sufficient_points(pressure)?;
+                let least = *POINTS_RANGE.start();
+                on_grid(points, least, |points| self.solve(pressure, points), on_its_grid)?
+            }
+        };
+        let error = refined.error.map(|error| error.friction_coefficient);
+        Ok(self.keep(SolveRow { discretisation_error: error, ..refined.solution }))
+    }
+
+    /// The usual grid, doubled while the contact has too few points.
+    fn sufficient_points(&mut self, pressure: f64) -> Result<usize, SolveError> {
         let mut points = self.base_points;
         for _ in 0..MOST_REFINEMENTS {
             let row = self.solve(pressure, points)?;
             if row.contact_area_fraction * points as f64 >= self.fewest_contact_points {
-                return Ok(self.keep(row));
+                break;
             }
             points *= 2;
         }
-        let row = self.solve(pressure, points)?;
-        Ok(self.keep(row))
+        Ok(points)
     }
 
     fn keep(&mut self, row: SolveRow) -> CurvePoint {
@@ -132,6 +171,7 @@ impl<'a> Curve<'a> {
             mean_pressure: row.pressure_mpa * 1e6,
             contact_area_fraction: row.contact_area_fraction,
             friction_coefficient: row.friction_coefficient,
+            discretisation_error: row.discretisation_error,
         };
         self.solves.push(row);
         point
@@ -160,6 +200,7 @@ impl<'a> Curve<'a> {
             hysteretic_friction: solution.hysteretic_friction,
             contact_area_fraction: solution.contact_area_fraction,
             mean_separation_mm: solution.mean_separation * 1e3,
+            discretisation_error: None,
             residual: solution.residual,
             iterations: solution.iterations as u64,
             grid_points: points as u64,
@@ -215,6 +256,14 @@ impl<'a> Curve<'a> {
             self.speed_mm_s
         );
         Ok(FieldSolution { group, area_fraction, spacing: self.period / points as f64, solution })
+    }
+}
+
+fn on_its_grid(row: &SolveRow) -> OnGrid {
+    OnGrid {
+        points: row.grid_points as usize,
+        friction_coefficient: row.friction_coefficient,
+        contact_area_fraction: row.contact_area_fraction,
     }
 }
 

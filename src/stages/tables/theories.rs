@@ -119,6 +119,7 @@ impl From<&TheoryRow> for Value {
             pressure_mpa: row.pressure_mpa,
             friction_coefficient: row.friction_coefficient,
             interpolation_error: 0.0,
+            discretisation_error: None,
         }
     }
 }

@@ -1,0 +1,56 @@
+//! Whether the averages have the accuracy that the recipe asks for.
+
+use super::{BEM, FrictionRow};
+
+/// Says so where averages of the half-space miss the wanted relative accuracy, by how much and what
+/// would mend it. Grids and interpolation keep to half of it, so that it is the realisations that are
+/// too few; the error of a mean falls with the square root of their number.
+pub(super) fn missed(tolerance: f64, rows: &[FrictionRow]) -> Option<String> {
+    let relative = |row: &FrictionRow| row.error_estimate.map(|error| error / row.mean.abs());
+    let half_space: Vec<&FrictionRow> = rows.iter().filter(|row| row.model == BEM).collect();
+    let known = half_space.iter().filter_map(|row| Some((row, relative(row)?)));
+    let (worst, most) = known.clone().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let missing = known.filter(|(_, error)| *error > tolerance).count();
+    if missing == 0 {
+        return None;
+    }
+    let realisations = worst.realisations.len() as f64;
+    let statistical = worst.confidence_95.unwrap_or(0.0) / worst.mean.abs();
+    let left = tolerance - (most - statistical);
+    let advice = if left > 0.0 {
+        let needed = (realisations * (statistical / left).powi(2)).ceil();
+        format!("about {needed} realisations would reach it (realise.realisations)")
+    } else {
+        "raise the tolerance".into()
+    };
+    Some(format!(
+        "the error of {missing} of {} averages exceeds the tolerance {tolerance}: the largest is {:.1} % of the \
+         friction, {:.1} % of it by only {realisations} realisations ({} waves, {} mm/s, area {}); {advice}",
+        half_space.len(),
+        100.0 * most,
+        100.0 * statistical,
+        worst.waves,
+        worst.speed_mm_s,
+        worst.contact_area_fraction
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{average, tests::curve};
+    use super::*;
+
+    #[test]
+    fn too_few_realisations_are_named_with_the_number_that_would_do() {
+        let curves = (1..=4).map(|k| curve(8, k, 0.05, 1.0 + 0.01 * f64::from(k))).collect();
+        let rows = average(BEM, curves);
+        assert_eq!(missed(0.5, &rows), None);
+        let warning = missed(0.01, &rows).unwrap();
+        // Mean 1.025, 95 % of four: 3.182 * 0.01291 / 2 = 0.02054, 2.00 %; grid and interpolation
+        // 0.15 %; 4 * (2.004 / 0.85)^2 = 22.3.
+        assert!(warning.contains("1 of 1 averages"), "{warning}");
+        assert!(warning.contains("2.2 % of the friction, 2.0 % of it by only 4"), "{warning}");
+        assert!(warning.contains("about 23 realisations"), "{warning}");
+        assert!(missed(0.001, &rows).unwrap().contains("raise the tolerance"));
+    }
+}
