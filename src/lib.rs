@@ -33,6 +33,7 @@ pub mod artifact;
 pub mod cli;
 pub mod contact;
 pub mod fem;
+pub mod forecast;
 pub mod multiscale;
 pub mod numerics;
 pub mod pipeline;

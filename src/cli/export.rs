@@ -291,7 +291,14 @@ fn csv_text(frame: &mut polars::prelude::DataFrame) -> Result<String, CliError> 
 /// The table with the columns of the published ones and the interval.
 fn published(table: &FrictionTable) -> Result<polars::prelude::DataFrame, CliError> {
     let frame = data_frame(&table.rows).map_err(CliError::failure)?;
-    let other = ["model", "waves", "speed_mm_s", "interpolation_error", "pressure_mpa"];
+    let other = [
+        "model",
+        "waves",
+        "speed_mm_s",
+        "interpolation_error",
+        "discretisation_error",
+        "pressure_mpa",
+    ];
     let keep = frame.get_column_names().into_iter().filter(|name| !other.contains(&name.as_str()));
     let keep: Vec<String> = keep.map(ToString::to_string).collect();
     frame.select(keep).map_err(CliError::failure)

@@ -10,6 +10,7 @@ mod inspect;
 mod interrupt;
 mod last_run;
 mod output;
+mod plan;
 mod progress;
 mod recipe_options;
 mod run;
@@ -38,6 +39,8 @@ pub struct Arguments {
 enum Command {
     Run(run::Run),
     Status(status::Status),
+    #[command(name = "plan")]
+    Plan(plan::PlanCommand),
     Export(export::Export),
     /// Solve a single contact problem, without any recipe.
     #[command(subcommand)]
@@ -56,6 +59,7 @@ impl Arguments {
         match self.command {
             Command::Run(command) => command.run(self.quiet),
             Command::Status(command) => command.run(),
+            Command::Plan(command) => command.run(self.quiet),
             Command::Export(command) => command.run(self.quiet),
             Command::Solve(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),

@@ -243,7 +243,12 @@ mod tests {
     fn point(pressure: f64) -> Result<CurvePoint, Infallible> {
         let contact_area_fraction = area(pressure);
         let friction_coefficient = friction(contact_area_fraction);
-        Ok(CurvePoint { mean_pressure: pressure, contact_area_fraction, friction_coefficient })
+        Ok(CurvePoint {
+            mean_pressure: pressure,
+            contact_area_fraction,
+            friction_coefficient,
+            discretisation_error: Some(1e-3 * contact_area_fraction),
+        })
     }
 
     #[test]

@@ -95,12 +95,12 @@ impl Bem {
             fields,
             "within the range of bem.area_fractions",
         )?;
-        for (key, tolerance) in [
+        let tolerances = [
             ("bem.tolerance", Some(self.interpolation_tolerance())),
             ("bem.grid_tolerance", self.grid_tolerance),
-        ] {
-            let valid = tolerance.is_none_or(|tolerance| (1e-6..=0.2).contains(&tolerance));
-            demand(valid, key, tolerance, "between 1e-6 and 0.2")?;
+        ];
+        for (key, tolerance) in tolerances.into_iter().filter_map(|(key, t)| Some((key, t?))) {
+            demand((1e-6..=0.2).contains(&tolerance), key, tolerance, "between 1e-6 and 0.2")?;
         }
         let points = self.points_per_shortest_wavelength;
         let key = "bem.points_per_shortest_wavelength";

@@ -287,7 +287,7 @@ impl Task<'_> {
 const ROUND_OFF: f64 = 1e-9;
 
 /// Whether two microscales are one.
-fn same_waves(left: &[Wave], right: &[Wave]) -> bool {
+pub(crate) fn same_waves(left: &[Wave], right: &[Wave]) -> bool {
     let same = |(a, b): (&Wave, &Wave)| {
         a.wavelength == b.wavelength
             && (a.amplitude - b.amplitude).abs() <= ROUND_OFF * a.amplitude.abs()

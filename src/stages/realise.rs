@@ -118,6 +118,26 @@ pub struct Surface {
     pub profile: Vec<Wave>,
 }
 
+impl Surface {
+    /// The period in m: the longest wavelength with an amplitude if it is a multiple of all others that
+    /// have one, else the longest of all, which always is. A wave without amplitude needs no room.
+    pub fn period(&self) -> f64 {
+        let longest = |waves: &mut dyn Iterator<Item = &Wave>| {
+            waves.map(|wave| wave.wavelength).fold(0.0, f64::max)
+        };
+        let present = || self.profile.iter().filter(|wave| wave.amplitude != 0.0);
+        let candidate = longest(&mut present());
+        let divides = |wave: &Wave| {
+            let count = candidate / wave.wavelength;
+            (count - count.round()).abs() <= 1e-9 * count
+        };
+        if candidate > 0.0 && present().all(divides) {
+            return candidate;
+        }
+        longest(&mut self.profile.iter())
+    }
+}
+
 /// Reads the surfaces of a run.
 ///
 /// # Errors
@@ -139,4 +159,22 @@ pub fn read_surfaces(run: &RunView) -> Result<Vec<Surface>, StageError> {
             .collect(),
     };
     Ok(rows.chunk_by(same).map(surface).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_period_is_that_of_the_waves_that_are_there() {
+        let period = |waves: &[(f64, f64)]| {
+            let wave = |&(wavelength, amplitude)| Wave { wavelength, amplitude, phase: 0.3 };
+            Surface { waves: 3, realisation: 1, profile: waves.iter().map(wave).collect() }.period()
+        };
+        assert_eq!(period(&[(1.0, 0.1), (2.0, 0.1), (4.0, 0.1)]), 4.0);
+        assert_eq!(period(&[(1.0, 0.1), (2.0, 0.1), (4.0, 0.0)]), 2.0);
+        // Two and three have only six in common.
+        assert_eq!(period(&[(2.0, 0.1), (3.0, 0.1), (6.0, 0.0)]), 6.0);
+        assert_eq!(period(&[(1.0, 0.0), (2.0, 0.0)]), 2.0);
+    }
 }

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 /// Revision of the contact solver: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 2;
+const SOLVER_REVISION: u32 = 3;
 
 /// Of the coarsest grid where an accuracy is asked for; three grids make an estimate.
 const FIRST_POINTS_PER_WAVE: u32 = 8;
@@ -65,7 +65,7 @@ impl<'a> Curve<'a> {
     ) -> Self {
         let present = || surface.profile.iter().filter(|wave| wave.amplitude != 0.0);
         let shortest = present().map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
-        let period = surface.profile.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let period = surface.period();
         let points = |per_wave: u32| {
             ((f64::from(per_wave) * period / shortest).round() as usize).next_power_of_two()
         };

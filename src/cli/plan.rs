@@ -1,0 +1,122 @@
+//! `asperity plan`: what a recipe will compute, before it runs.
+
+use std::fmt::Write;
+
+use clap::Args;
+
+use super::interrupt::Interrupt;
+use super::output::{json, print, significant};
+use super::progress::Spinner;
+use super::recipe_options::RecipeOptions;
+use super::{CliError, values};
+use crate::forecast::{Forecast, ForecastError, ScaleModel, forecast};
+
+const EXAMPLES: &str = "\
+Examples:
+  Models, grids, time and memory of the bundled recipe:
+    asperity plan pipelines/asphalt.toml
+  What two per cent of accuracy would cost:
+    asperity plan pipelines/asphalt.toml --tolerance 0.02";
+
+/// Say which model each scale will get, on which grids, and what that costs.
+///
+/// Runs the cheap stages and the half-space of one realisation in a temporary folder; nothing is
+/// written to the run folder.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct PlanCommand {
+    #[command(flatten)]
+    recipe: RecipeOptions,
+    /// Number of threads of the run; all cores if not given.
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
+    threads: Option<usize>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl PlanCommand {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`].
+    pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
+        let recipe = self.recipe.recipe()?;
+        if self.threads == Some(0) {
+            return Err(CliError::input("--threads is 0: give at least 1"));
+        }
+        let threads = self.threads.unwrap_or_else(rayon::current_num_threads);
+        let interrupt = Interrupt::install()?;
+        let spinner = Spinner::new(quiet, "trying one realisation");
+        let forecast = forecast(&recipe, threads, interrupt.flag())?;
+        spinner.finish();
+        print(&if self.json { json(&forecast)? } else { text(&forecast) })
+    }
+}
+
+impl From<ForecastError> for CliError {
+    fn from(error: ForecastError) -> Self {
+        match error {
+            ForecastError::Pipeline(error) => error.into(),
+            ForecastError::Recipe(_) | ForecastError::Sinusoid => Self::input(error),
+            _ => Self::failure(error),
+        }
+    }
+}
+
+fn text(forecast: &Forecast) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    for curve in &forecast.curves {
+        let [low, high] = curve.pressures_mpa.map(significant);
+        let [coarse, fine] = curve.grid_points;
+        let grids = if coarse == fine { fine.to_string() } else { format!("{coarse} to {fine}") };
+        let _ = writeln!(
+            text,
+            "{} waves, {} mm/s: {low} to {high} MPa, {} pressures a realisation on {grids} points",
+            curve.waves, curve.speed_mm_s, curve.solves
+        );
+        let _ = writeln!(
+            text,
+            "  wavelength  amplitude  rms slope  full contact  pressed flat  model            why"
+        );
+        for scale in &curve.scales {
+            let model = match scale.model {
+                ScaleModel::LeftOut => "none",
+                ScaleModel::HalfSpace => "half-space",
+                ScaleModel::FiniteElements => "finite elements",
+            };
+            let _ = writeln!(
+                text,
+                "  {:>7.4} mm {:>7.4} mm {:>10.4} {:>9.3} MPa {:>11.0} %  {model:<15}  {}",
+                scale.wavelength_mm,
+                scale.amplitude_mm,
+                scale.rms_slope,
+                scale.full_contact_mpa,
+                100.0 * scale.pressed_flat,
+                scale.reason
+            );
+        }
+    }
+    for micro in &forecast.micro {
+        let _ = writeln!(
+            text,
+            "microscale of {} waves, {} mm/s: {} columns, pressed to {} MPa, about {:.0} s",
+            micro.waves,
+            micro.speed_mm_s,
+            micro.columns,
+            significant(micro.most_pressure_mpa),
+            micro.seconds
+        );
+    }
+    let seconds = |seconds: Option<f64>| {
+        seconds.map_or_else(|| "not known".into(), |seconds| format!("{seconds:.2} s"))
+    };
+    for stage in &forecast.stages {
+        let _ = writeln!(text, "{:<13} {:>12}", stage.stage.name(), seconds(stage.seconds));
+    }
+    let known: f64 = forecast.stages.iter().filter_map(|stage| stage.seconds).sum();
+    let _ =
+        writeln!(text, "together      {:>12}, {:.0} MB", seconds(Some(known)), forecast.megabytes);
+    text
+}

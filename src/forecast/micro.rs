@@ -1,0 +1,99 @@
+//! What the microscales will ask of the finite elements.
+
+use super::ForecastError;
+use crate::contact::SlidingContact;
+use crate::multiscale::scales::Scales;
+use crate::rubber::Rubber;
+use crate::stages::bem::CurveRow;
+use crate::stages::micro::Micro;
+use crate::stages::realise::Surface;
+use crate::stages::{SolveError, StageError};
+use serde::Serialize;
+
+/// Seconds of a microscale on 128 columns for each MPa that it is pressed to, with all its samples: of
+/// the main job, 190 s for 43 MPa. Elements cost alike up to a power of 1.15 in their number.
+const SECONDS_PER_MPA: f64 = 4.4;
+const REFERENCE_COLUMNS: f64 = 128.0;
+const GROWTH: f64 = 1.15;
+
+/// A microscale at one speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MicroForecast {
+    /// Number of waves of the approximation, the first of those that have it.
+    pub waves: u32,
+    /// Sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// Waves that it has.
+    pub micro_waves: usize,
+    /// Elements over its period.
+    pub columns: usize,
+    /// Largest pressure of the macro contact, to which it is pressed, in MPa.
+    pub most_pressure_mpa: f64,
+    /// Expected seconds, on one thread.
+    pub seconds: f64,
+}
+
+/// The microscales of the surfaces, from the macro contact of the first realisation at the largest
+/// area. Several micro waves have phases, and so a microscale of their own in each realisation.
+pub(super) fn microscales(
+    parameters: &Micro,
+    rubber: &Rubber,
+    surfaces: &[Surface],
+    curves: &[CurveRow],
+    realisations: f64,
+) -> Result<Vec<MicroForecast>, ForecastError> {
+    let mut found: Vec<(MicroForecast, Scales)> = Vec::new();
+    for surface in surfaces {
+        let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
+        let (Some(longest), false) = (scales.micro.last(), scales.macroscale.is_empty()) else {
+            continue;
+        };
+        let shared = |other: &(MicroForecast, Scales)| {
+            crate::stages::micro::same_waves(&other.1.micro, &scales.micro)
+        };
+        let own: Vec<&CurveRow> = curves.iter().filter(|row| row.waves == surface.waves).collect();
+        for rows in own.chunk_by(|a, b| a.speed_mm_s == b.speed_mm_s) {
+            let (row, speed_mm_s) = (rows[rows.len() - 1], rows[0].speed_mm_s);
+            if found.iter().any(|other| other.0.speed_mm_s == speed_mm_s && shared(other)) {
+                continue;
+            }
+            let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
+            let solve = || -> Result<f64, SolveError> {
+                let mut contact = SlidingContact::new(rubber, speed_mm_s / 1e3, period, &heights)?;
+                let solution = contact.solve(row.pressure_mpa * 1e6)?;
+                Ok(solution.pressure.iter().copied().fold(0.0, f64::max))
+            };
+            let most = solve().map_err(|source| {
+                let (waves, realisation) = (surface.waves, surface.realisation);
+                let source = Box::new(crate::contact::curve::CurveError::Solve(source));
+                StageError::Contact { waves, realisation, speed_mm_s, source }
+            })?;
+            let shortest = scales.micro[0].wavelength;
+            let columns = crate::stages::micro::columns(
+                parameters.columns_per_shortest_wavelength,
+                longest.wavelength,
+                shortest,
+            );
+            let most_pressure_mpa = most / 1e6;
+            let growth = (columns as f64 / REFERENCE_COLUMNS).powf(GROWTH);
+            let each = if scales.micro.len() == 1 { 1.0 } else { realisations };
+            let forecast = MicroForecast {
+                waves: surface.waves,
+                speed_mm_s,
+                micro_waves: scales.micro.len(),
+                columns,
+                most_pressure_mpa,
+                seconds: each * SECONDS_PER_MPA * growth * most_pressure_mpa,
+            };
+            found.push((forecast, scales.clone()));
+        }
+    }
+    Ok(found.into_iter().map(|(forecast, _)| forecast).collect())
+}
+
+/// Wall time of the stage: its microscales run side by side.
+pub(super) fn seconds(microscales: &[MicroForecast], threads: usize) -> f64 {
+    let total: f64 = microscales.iter().map(|micro| micro.seconds).sum();
+    let longest = microscales.iter().map(|micro| micro.seconds).fold(0.0, f64::max);
+    longest.max(total / threads as f64)
+}
