@@ -26,6 +26,7 @@ fn one_sine_has_the_published_friction() {
     keys.sort_unstable();
     let expected = [
         "contact_area_fraction",
+        "error_estimate",
         "friction_coefficient",
         "grid_points",
         "iterations",
@@ -154,8 +155,35 @@ fn fields_never_replace_an_input() {
 }
 
 #[test]
+fn the_grid_follows_from_the_accuracy_that_is_asked_for() {
+    let solve = |rest: &str| asperity(&format!("{TABLE_5_3} {rest} --json")).json();
+    let truth = number(&solve("--points 262144"), "friction_coefficient");
+    let mut coarser = 0;
+    for tolerance in [1e-2, 1e-4, 1e-6] {
+        let result = solve(&format!("--tolerance {tolerance}"));
+        let friction = number(&result, "friction_coefficient");
+        let estimate = result["error_estimate"]["total"].as_f64().unwrap();
+        assert!(estimate <= tolerance * friction, "{result}");
+        assert!((friction - truth).abs() <= estimate, "{result} {truth}");
+        let points = result["grid_points"].as_u64().unwrap();
+        assert!(points > coarser);
+        coarser = points;
+    }
+    let unreached =
+        format!("{TABLE_5_3} --tolerance 1e-8 --area 1e-6").replace("--pressure 3.30858 ", "");
+    let message = asperity(&unreached).error(1);
+    assert!(message.contains("the relative accuracy 0.00000001 is not reached"), "{message}");
+    for (rest, part) in [
+        ("--tolerance 0", "between 1e-8 and 0.5"),
+        ("--tolerance 1e-3 --points 512", "cannot be used with"),
+    ] {
+        assert!(asperity(&format!("{TABLE_5_3} {rest}")).error(2).contains(part), "{rest}");
+    }
+}
+
+#[test]
 fn unresolved_spots_are_warned_of_on_standard_error_only() {
-    let solve = "solve bem --wave 0.0625:0.01867 --speed 10 --pressure 1e-4 --json";
+    let solve = "solve bem --wave 0.0625:0.01867 --speed 10 --pressure 1e-4 --points 64 --json";
     let outcome = asperity(solve);
     assert_eq!(outcome.code, 0);
     assert!(outcome.stderr.starts_with("warning: a contact spot is 1.00000 grid points wide"));

@@ -69,8 +69,8 @@ pub(in crate::cli) struct Bem {
     #[command(flatten)]
     material: MaterialOptions,
     /// Relative accuracy of friction (of an elastic half-space: of the contact area): the grid is
-    /// refined until it is reached [default: 0.001; with --points or --profile the error of that
-    /// grid is estimated and reported].
+    /// refined until it is reached [default: 0.001, on 64 points of the shortest wave or more; with
+    /// --points or --profile the error of that grid is estimated and reported].
     #[arg(long, value_name = "RELATIVE", conflicts_with_all = ["points", "profile"], value_parser = values::tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// Print JSON with full precision instead of a table.
@@ -146,12 +146,13 @@ impl Bem {
         let watched =
             if rubber.branches.is_empty() { Watched::ContactArea } else { Watched::Friction };
         let waves = shape.shortest_waves().unwrap_or(1);
-        let refinement = Refinement {
-            tolerance: self.tolerance.unwrap_or(DEFAULT_TOLERANCE),
-            watched,
-            first: (FIRST_POINTS_PER_WAVE * waves).next_power_of_two(),
-            most: MOST_POINTS,
+        let first = match self.tolerance {
+            Some(_) => (FIRST_POINTS_PER_WAVE * waves).next_power_of_two(),
+            // The third grid, the first with an estimate, is then the usual one.
+            None => shape.heights.len() / 4,
         };
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let refinement = Refinement { tolerance, watched, first, most: MOST_POINTS };
         let optional = |points: usize| match solve(points) {
             // A small contact needs a fine grid, and so may its area.
             Err(CliError::Failure(_)) if 2 * points <= MOST_POINTS => Ok(None),
