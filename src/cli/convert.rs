@@ -68,7 +68,16 @@ impl Convert {
     }
 
     fn native(&self) -> Result<Option<ScanFile>, CliError> {
-        read_file(&self.file).map_err(CliError::input)
+        if self.file.is_dir() {
+            let problem = "is a folder; give the file of one scan";
+            return Err(CliError::input(format!("{} {problem}", self.file.display())));
+        }
+        let native = read_file(&self.file).map_err(CliError::input)?;
+        if native.is_some() {
+            let what = "the file of an instrument, which states its units";
+            self.scan.refuse(&self.file, what)?;
+        }
+        Ok(native)
     }
 
     fn text(&self) -> Result<RawScan, CliError> {

@@ -68,20 +68,22 @@ pub enum ScanProblem {
     BlankLine,
     #[error("`{text}` is not a number{hint}")]
     NotANumber { text: String, hint: &'static str },
-    #[error("`{text}` has the wrong decimal mark; set `decimal_mark = \"{mark}\"`")]
-    DecimalMark { text: String, mark: char },
+    #[error("`{text}` has the wrong decimal mark; set `decimal_mark = \"{mark}\"`{hint}")]
+    DecimalMark { text: String, mark: char, hint: &'static str },
+    #[error("`{text}` separates thousands by `{mark}`, which is not read; export the file without")]
+    Thousands { text: String, mark: char },
     #[error(
         "`{text}` is infinite or too large for a number; list it in `missing` if it marks a gap"
     )]
     Infinite { text: String },
     #[error(
-        "the position {text} comes after {previous}; sort the file or cut it where it turns back"
+        "the position {text} comes after {previous}; check `x_column`, sort the file by position, or cut it where the track turns back"
     )]
     NotIncreasing { text: String, previous: String },
     #[error(
-        "the position {text} is there twice; choose the column of positions, or average the points"
+        "all {points} points have the same position; choose the column of positions (`x_column`)"
     )]
-    Repeated { text: String },
+    OnePosition { points: usize },
     #[error(
         "too few points: {rows} where at least 2 are needed; check `skip_lines`, `skip_until` and `comment`"
     )]
@@ -92,10 +94,20 @@ pub enum ScanProblem {
         "nothing is left: the track is {length_mm} mm long, cut_start_mm + cut_end_mm is {cut_mm} mm"
     )]
     AllCut { length_mm: f64, cut_mm: f64 },
-    #[error("points {spacing_mm} mm apart are no scan of texture (1e-6 to 10 mm); check `{key}`")]
+    #[error("points {} mm apart are no scan of texture (1e-6 to 10 mm); check `{key}`", brief(*spacing_mm))]
     AbsurdSpacing { spacing_mm: f64, key: &'static str },
     #[error(
-        "heights from {lowest_m} m to {highest_m} m are no road; check `z_unit`, or list a marker of missing points in `missing`"
+        "heights from {} m to {} m are no road; check `z_unit`, or list a marker of missing points in `missing`",
+        brief(*lowest_m), brief(*highest_m)
     )]
     AbsurdHeights { lowest_m: f64, highest_m: f64 },
+}
+
+/// A number without hundreds of digits.
+fn brief(number: f64) -> String {
+    if number == 0.0 || (1e-6..1e7).contains(&number.abs()) {
+        number.to_string()
+    } else {
+        format!("{number:.3e}")
+    }
 }

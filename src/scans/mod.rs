@@ -11,6 +11,7 @@ pub mod error;
 pub mod file;
 mod text;
 pub mod text_shape;
+mod thousands;
 
 pub use description::TextFormat;
 pub use error::{ScanError, ScanProblem};

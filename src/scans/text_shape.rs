@@ -10,6 +10,7 @@ mod tests;
 
 use crate::scans::TextFormat;
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator, default_missing};
+use crate::scans::thousands::thousands_mark;
 use csv::ReaderBuilder;
 use std::fmt::Write;
 
@@ -42,6 +43,8 @@ pub struct TextShape {
     pub missing: Vec<String>,
     /// Lines before the points that state a unit, as they stand.
     pub stated: Vec<String>,
+    /// A cell whose thousands are separated, which the reader refuses.
+    pub thousands: Option<String>,
 }
 
 /// A column of a text file.
@@ -51,7 +54,7 @@ pub struct TextColumn {
     pub name: String,
     /// The unit in its name.
     pub unit: Option<LengthUnit>,
-    /// Whether its numbers grow from line to line.
+    /// Whether its numbers grow from line to line, or stay in no more than two thirds of them.
     pub grows: bool,
 }
 
@@ -71,9 +74,33 @@ impl TextShape {
         let (layout, mut body) = layouts
             .filter(|layout| layout.is_possible())
             .filter_map(|layout| Some((layout, layout.body(start)?)))
-            .rev_max_by_key(|(_, body)| (body.rows.len(), body.rows[0].len()))?;
+            .rev_max_by_key(|(_, body)| (body.rows.len(), body.rows[0].len(), !body.thousands))?;
+        layout.go_back(&mut body, start);
         layout.extend(&mut body, &lines);
         Some(describe(encoding, layout, &body, &lines))
+    }
+
+    /// Where the description states another unit than the column it names, in words.
+    pub fn contradictions(&self, format: &TextFormat) -> Vec<String> {
+        let column = |column: &Column| match column {
+            Column::Name(name) => self.columns.iter().find(|found| found.name == name.trim()),
+            Column::Number(number) if self.separator == format.separator => {
+                self.columns.get(number.checked_sub(1)?)
+            }
+            Column::Number(_) => None,
+        };
+        let contradiction = |key, named: &Column, unit: Option<LengthUnit>| {
+            let (column, unit) = (column(named)?, unit?);
+            let stated = column.unit.filter(|stated| *stated != unit)?;
+            let (stated, unit) = (unit_name(stated), unit_name(unit));
+            Some(format!(
+                "the column `{}` states {stated}, the description {key} = \"{unit}\"",
+                column.name
+            ))
+        };
+        let x = format.x_column.as_ref();
+        let x = x.and_then(|column| contradiction("x_unit", column, format.x_unit));
+        x.into_iter().chain(contradiction("z_unit", &format.z_column, format.z_unit)).collect()
     }
 
     /// The proposed description.
@@ -200,12 +227,18 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
+fn unit_name(unit: LengthUnit) -> &'static str {
+    match unit {
+        LengthUnit::Nm => "nm",
+        LengthUnit::Um => "um",
+        LengthUnit::Mm => "mm",
+        LengthUnit::M => "m",
+    }
+}
+
 fn unit_text(key: &str, unit: Option<LengthUnit>) -> String {
     match unit {
-        Some(LengthUnit::Nm) => format!("{key} = \"nm\""),
-        Some(LengthUnit::Um) => format!("{key} = \"um\""),
-        Some(LengthUnit::Mm) => format!("{key} = \"mm\""),
-        Some(LengthUnit::M) => format!("{key} = \"m\""),
+        Some(unit) => format!("{key} = \"{}\"", unit_name(unit)),
         None => {
             format!("# {key} = ?                  # the column does not state it: nm, um, mm or m")
         }
@@ -235,6 +268,14 @@ struct Body {
     start: usize,
     /// Numbers of each line, NaN where missing.
     rows: Vec<Vec<f64>>,
+    /// Whether thousands are separated in one of them.
+    thousands: bool,
+}
+
+impl Body {
+    fn at(start: usize) -> Self {
+        Self { start, rows: Vec::new(), thousands: false }
+    }
 }
 
 impl Layout {
@@ -267,45 +308,78 @@ impl Layout {
         is_point.then_some(numbers)
     }
 
+    /// The numbers of a line beside others of `width` cells: at least half of its cells are
+    /// numbers, the first among them, and the others are marks that are not known. Footers and
+    /// names begin with a word.
+    fn marked_numbers(self, line: &str, width: usize) -> Option<Vec<f64>> {
+        let cells = self.cells(line);
+        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| self.number(cell)).collect();
+        let known = numbers.iter().flatten().filter(|number| number.is_finite()).count();
+        let is_point = cells.len() == width
+            && numbers.first().is_some_and(Option::is_some)
+            && known > 0
+            && 2 * known >= width;
+        is_point.then(|| numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+    }
+
+    fn has_thousands(self, line: &str) -> bool {
+        self.cells(line).iter().any(|cell| thousands_mark(cell, self.mark).is_some())
+    }
+
     fn number(self, cell: &str) -> Option<f64> {
         if missing::is_word(cell) {
             return Some(f64::NAN);
         }
-        let point = match self.mark {
-            DecimalMark::Point => cell.to_owned(),
-            DecimalMark::Comma if cell.contains('.') => return None,
-            DecimalMark::Comma => cell.replacen(',', ".", 1),
+        let parsed: Option<f64> = match self.mark {
+            DecimalMark::Point => cell.parse().ok(),
+            DecimalMark::Comma if cell.contains('.') => None,
+            DecimalMark::Comma => cell.replacen(',', ".", 1).parse().ok(),
         };
-        point.parse().ok().filter(|number: &f64| number.is_finite())
+        let number = parsed.or_else(|| {
+            let mark = thousands_mark(cell, self.mark)?;
+            self.number(&cell.replace(mark, ""))
+        });
+        number.filter(|number| number.is_finite())
     }
 
     /// Goes on with the points where the first lines end.
     fn extend(self, body: &mut Body, lines: &[&str]) {
         let width = body.rows[0].len();
         let next = body.start + body.rows.len();
-        let further = lines.iter().skip(next).map_while(|line| self.numbers(line));
+        let points = |line: &&str| self.numbers(line).or_else(|| self.marked_numbers(line, width));
+        let further = lines.iter().skip(next).map_while(points);
         body.rows.extend(further.take_while(|row| row.len() == width));
+    }
+
+    /// Takes in lines right before the points whose height is marked by a word that is not known.
+    fn go_back(self, body: &mut Body, lines: &[&str]) {
+        let width = body.rows[0].len();
+        let before = lines[..body.start].iter().rev();
+        let marked: Vec<_> = before.map_while(|line| self.marked_numbers(line, width)).collect();
+        body.start -= marked.len();
+        body.rows.splice(..0, marked.into_iter().rev());
     }
 
     /// The longest run of lines of equally many numbers.
     fn body(self, lines: &[&str]) -> Option<Body> {
-        let mut longest = Body { start: 0, rows: Vec::new() };
-        let mut current = Body { start: 0, rows: Vec::new() };
+        let (mut longest, mut current) = (Body::at(0), Body::at(0));
         for (index, line) in lines.iter().enumerate() {
-            match self.numbers(line) {
-                Some(row) if current.rows.first().is_some_and(|first| first.len() == row.len()) => {
+            let width = current.rows.first().map(Vec::len);
+            let marked = || width.and_then(|width| self.marked_numbers(line, width));
+            match self.numbers(line).or_else(marked) {
+                Some(row) if width == Some(row.len()) => {
                     current.rows.push(row);
                 }
                 Some(row) if row.iter().any(|number| number.is_finite()) => {
-                    let before =
-                        std::mem::replace(&mut current, Body { start: index, rows: vec![row] });
-                    longest = longer(longest, before);
+                    let next = Body { rows: vec![row], ..Body::at(index) };
+                    longest = longer(longest, std::mem::replace(&mut current, next));
                 }
                 _ => {
-                    let none = Body { start: index, rows: Vec::new() };
+                    let none = Body::at(index);
                     longest = longer(longest, std::mem::replace(&mut current, none));
                 }
             }
+            current.thousands |= !current.rows.is_empty() && self.has_thousands(line);
         }
         Some(longer(longest, current)).filter(|body| body.rows.len() > 1)
     }
@@ -350,7 +424,7 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
         TextColumn {
             unit: unit_in(&name)
                 .or_else(|| unit_of_two(above.get(number).map_or("", String::as_str), &name)),
-            grows: values.windows(2).all(|pair| pair[1] > pair[0]),
+            grows: grows(&values),
             name,
         }
     };
@@ -370,14 +444,24 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
             .map(|l| l.trim().to_owned())
             .collect(),
         missing: Vec::new(),
+        thousands: None,
     };
     let (_, z) = shape.proposed_columns();
     let numbers: Vec<f64> = body.rows.iter().map(|row| row[z]).collect();
     let points = &lines[body.start..body.start + body.rows.len()];
-    let mut missing =
-        missing::words(points.iter().filter_map(|line| layout.cells(line).into_iter().nth(z)));
+    let heights = || points.iter().filter_map(|line| layout.cells(line).into_iter().nth(z));
+    let is_word = |cell: &String| layout.number(cell).is_none_or(f64::is_nan);
+    let mut missing = missing::words(heights().filter(is_word));
     missing.extend(missing::numbers(&numbers).into_iter().map(missing::mark_text));
-    TextShape { missing, ..shape }
+    let mut cells = points.iter().take(MOST_LINES).flat_map(|line| layout.cells(line));
+    let thousands = cells.find(|cell| thousands_mark(cell, layout.mark).is_some());
+    TextShape { missing, thousands, ..shape }
+}
+
+/// Whether numbers are positions, of which some may be there two or three times.
+fn grows(values: &[f64]) -> bool {
+    let steps = values.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    3 * steps >= values.len() - 1 && values.windows(2).all(|pair| pair[1] >= pair[0])
 }
 
 fn comment_of(preamble: &[&str]) -> Option<char> {

@@ -3,6 +3,7 @@
 
 mod spectrum;
 mod standards;
+mod warnings;
 
 pub use spectrum::{
     AGREEMENT_FILE, AgreementRow, HURST_FILE, HurstRow, ISOTROPIC_FILE, IsotropicRow,
@@ -17,9 +18,10 @@ use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
+use crate::surface::LineScan;
 use crate::surface::correlation::{HeightDifferenceCorrelation, Probe, correlate_scans};
 use crate::surface::filter::ProfileFilter;
-use crate::surface::parameters::{AverageRoughness, RoughnessParameters};
+use crate::surface::parameters::{AverageRoughness, ParameterError, RoughnessParameters};
 use crate::surface::profile::ProfileStandard;
 use crate::surface::self_affine::{ConfidenceInterval, LagRange, SelfAffineFit, fit_self_affine};
 use crate::surface::spectrum::{PowerSpectrum, Window, power_spectra};
@@ -28,7 +30,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// Section `[characterise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -130,6 +132,26 @@ impl Characterise {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
             demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
+        for (keys, lower, upper) in [
+            ("characterise.(lambda_s_mm, lambda_c_mm)", self.lambda_s_mm, self.lambda_c_mm),
+            (
+                "characterise.(lambda_s_mm, section_length_mm)",
+                self.lambda_s_mm,
+                self.section_length_mm,
+            ),
+            (
+                "characterise.(self_affine_shortest_lag_mm, self_affine_longest_lag_mm)",
+                self.self_affine_shortest_lag_mm,
+                self.self_affine_longest_lag_mm,
+            ),
+            (
+                "characterise.(hurst_shortest_wavelength_mm, hurst_longest_wavelength_mm)",
+                self.hurst_shortest_wavelength_mm,
+                self.hurst_longest_wavelength_mm,
+            ),
+        ] {
+            demand_ascending(keys, lower, upper)?;
+        }
         self.profile_depth.check()
     }
 
@@ -139,6 +161,20 @@ impl Characterise {
             spot_diameter: self.spot_diameter_um.map(metres),
             tip_radius: self.tip_radius_um.map(metres),
         }
+    }
+}
+
+/// Of two lengths that are both given the first is the shorter.
+fn demand_ascending(
+    keys: &'static str,
+    lower: Option<f64>,
+    upper: Option<f64>,
+) -> Result<(), Violation> {
+    match (lower, upper) {
+        (Some(lower), Some(upper)) => {
+            demand(lower < upper, keys, (lower, upper), "the first shorter than the second")
+        }
+        _ => Ok(()),
     }
 }
 
@@ -302,7 +338,7 @@ pub fn schemas() -> Vec<SchemaVersion> {
 /// Characterises the windows of the run and writes the results; returns warnings.
 ///
 /// # Errors
-/// [`StageError`]: a window without heights, correlations that cannot be fitted.
+/// [`StageError`]: a window without heights. What cannot be fitted is left out with a warning.
 pub fn run(
     parameters: &Characterise,
     run: &RunView,
@@ -310,10 +346,7 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let windows = read_windows(run)?;
     context.check_interrupt()?;
-    let roughness: Vec<_> = windows
-        .par_iter()
-        .map(|window| RoughnessParameters::of(window, 0.0))
-        .collect::<Result<_, _>>()?;
+    let (roughness, mut warnings) = roughness_parameters(&windows)?;
     let longest_lag = parameters.longest_lag_mm.map(|mm| mm / 1e3);
     let correlations = correlate_scans(&windows, longest_lag)?;
     let average = HeightDifferenceCorrelation::average(&correlations)?;
@@ -322,9 +355,8 @@ pub fn run(
     let mean_spectrum = PowerSpectrum::average(&spectra)?;
 
     let names: Vec<&str> = windows.iter().map(|window| window.name.as_str()).collect();
-    let named = |name: &&str| (*name).to_owned();
-    let rows: Vec<_> = names.iter().map(named).zip(&roughness).map(parameters_row).collect();
     let none = Metadata::new();
+    let rows: Vec<_> = roughness.iter().map(parameters_row).collect();
     context.pending.write_table(PARAMETERS_FILE, &rows, &none)?;
     context.pending.write_table(AVERAGES_FILE, &average_rows(&roughness)?, &none)?;
 
@@ -343,13 +375,16 @@ pub fn run(
     metadata.extend([cut_off]);
     context.pending.write_table(SPECTRUM_FILE, &spectrum_rows, &metadata)?;
     context.check_interrupt()?;
-    let rows = standards::profile_rows(parameters, &windows);
+    let (rows, told) = standards::profile_rows(parameters, &windows);
+    warnings.extend(told);
     context.pending.write_table(PROFILE_FILE, &rows, &none)?;
-    let rows = standards::depth_rows(parameters, &windows);
+    let (rows, told) = standards::depth_rows(parameters, &windows);
+    warnings.extend(told);
     context.pending.write_table(DEPTH_FILE, &rows, &none)?;
     let rows = standards::texture_rows(&names, &spectra, &mean_spectrum);
     context.pending.write_table(TEXTURE_FILE, &rows, &none)?;
-    let (rows, mut warnings) = self_affine(parameters, &names, &correlations)?;
+    let (rows, told) = self_affine(parameters, &names, &correlations);
+    warnings.extend(told);
     context.pending.write_table(SELF_AFFINE_FILE, &rows, &none)?;
     let shortest_lag_mm = parameters.self_affine_shortest_lag_mm.unwrap_or(average.spacing * 1e3);
     let (hurst, missing) =
@@ -366,15 +401,39 @@ pub fn run(
 
 /// Length of the shortest window as text. The part of a scan that fills no further point counts:
 /// a scan cut to whole points is up to one spacing longer than its points.
-fn shortest_window_mm(windows: &[crate::surface::LineScan]) -> String {
-    let length = |window: &crate::surface::LineScan| window.length() + window.spacing;
+fn shortest_window_mm(windows: &[LineScan]) -> String {
+    let length = |window: &LineScan| window.length() + window.spacing;
     let shortest = windows.iter().map(length).fold(f64::INFINITY, f64::min);
     (shortest * 1e3).to_string()
 }
 
-fn parameters_row((scan, roughness): (String, &RoughnessParameters)) -> ParametersRow {
+/// Name of a window and its parameters.
+type NamedParameters = (String, RoughnessParameters);
+
+/// Parameters of the windows with their names, and a warning of those that are flat: they have no
+/// skewness and no row.
+fn roughness_parameters(
+    windows: &[LineScan],
+) -> Result<(Vec<NamedParameters>, Vec<String>), StageError> {
+    let (mut found, mut flat) = (Vec::new(), Vec::new());
+    let all: Vec<_> =
+        windows.par_iter().map(|window| RoughnessParameters::of(window, 0.0)).collect();
+    for (window, parameters) in windows.iter().zip(all) {
+        match parameters {
+            Ok(parameters) => found.push((window.name.clone(), parameters)),
+            Err(ParameterError::Flat { .. }) => {
+                flat.push((window.name.clone(), "all of its heights are the same".to_owned()));
+            }
+            Err(error) => return Err(error.into()),
+        }
+    }
+    let warning = warnings::left_out("windows", windows.len(), "roughness parameters", &flat);
+    Ok((found, warning.into_iter().collect()))
+}
+
+fn parameters_row((scan, roughness): &NamedParameters) -> ParametersRow {
     ParametersRow {
-        scan,
+        scan: scan.clone(),
         ra_mm: roughness.mean_absolute_height * 1e3,
         rq_mm: roughness.rms_height * 1e3,
         rp_mm: roughness.highest_peak * 1e3,
@@ -386,8 +445,12 @@ fn parameters_row((scan, roughness): (String, &RoughnessParameters)) -> Paramete
     }
 }
 
-fn average_rows(roughness: &[RoughnessParameters]) -> Result<Vec<AverageRow>, StageError> {
-    let average = AverageRoughness::of(roughness)?;
+fn average_rows(roughness: &[NamedParameters]) -> Result<Vec<AverageRow>, StageError> {
+    if roughness.is_empty() {
+        return Ok(Vec::new());
+    }
+    let parameters: Vec<_> = roughness.iter().map(|(_, parameters)| *parameters).collect();
+    let average = AverageRoughness::of(&parameters)?;
     let row = |parameter: &str, estimate: MeanEstimate, factor: f64| AverageRow {
         parameter: parameter.to_owned(),
         mean: estimate.mean * factor,
@@ -426,11 +489,12 @@ fn correlation_rows(
     samples.into_iter().map(row).collect()
 }
 
+/// Fits of the windows and of the average; one that cannot be made has a warning and no row.
 fn self_affine(
     parameters: &Characterise,
     names: &[&str],
     correlations: &[HeightDifferenceCorrelation],
-) -> Result<(Vec<SelfAffineRow>, Vec<String>), StageError> {
+) -> (Vec<SelfAffineRow>, Vec<String>) {
     let spacing = correlations.first().map_or(0.0, |c| c.spacing);
     let most = correlations.iter().map(|c| c.maximum_lag()).min().unwrap_or(0);
     let range = LagRange {
@@ -438,25 +502,33 @@ fn self_affine(
         longest: parameters.self_affine_longest_lag_mm.map_or(most as f64 * spacing, |mm| mm / 1e3),
         per_decade: parameters.lags_per_decade,
     };
-    let mut rows = names
+    let fits: Vec<_> = correlations
         .par_iter()
-        .zip(correlations)
-        .map(|(name, c)| {
-            let fit = fit_self_affine(std::slice::from_ref(c), Some(range))?;
-            Ok(self_affine_row(name, &fit))
-        })
-        .collect::<Result<Vec<_>, StageError>>()?;
-    let fit = fit_self_affine(correlations, Some(range))?;
-    rows.push(self_affine_row(AVERAGE, &fit));
-    let mut warnings = Vec::new();
-    if !fit.plateau_found {
-        warnings.push(
-            "the averaged correlation reaches no plateau: both correlation lengths are lower \
-             bounds; use longer windows"
-                .to_owned(),
-        );
+        .map(|c| fit_self_affine(std::slice::from_ref(c), Some(range)))
+        .collect();
+    let (mut rows, mut failed) = (Vec::new(), Vec::new());
+    for (name, fit) in names.iter().zip(fits) {
+        match fit {
+            Ok(fit) => rows.push(self_affine_row(name, &fit)),
+            Err(error) => failed.push(((*name).to_owned(), error.to_string())),
+        }
     }
-    Ok((rows, warnings))
+    let told = warnings::left_out("windows", names.len(), "self-affine fit", &failed);
+    let mut warnings: Vec<String> = told.into_iter().collect();
+    match fit_self_affine(correlations, Some(range)) {
+        Ok(fit) => {
+            rows.push(self_affine_row(AVERAGE, &fit));
+            if !fit.plateau_found {
+                warnings.push(
+                    "the averaged correlation reaches no plateau: both correlation lengths are \
+                     lower bounds; use longer windows"
+                        .to_owned(),
+                );
+            }
+        }
+        Err(error) => warnings.push(format!("no self-affine fit of the average: {error}")),
+    }
+    (rows, warnings)
 }
 
 fn self_affine_row(scan: &str, fit: &SelfAffineFit) -> SelfAffineRow {

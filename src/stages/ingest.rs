@@ -3,6 +3,7 @@
 mod cleaning;
 mod faults;
 mod picture;
+mod warnings;
 
 pub use cleaning::{CLEANING_FILE, cleaning_markdown};
 pub use faults::{FAULTS_FILE, FaultRow};
@@ -16,9 +17,10 @@ use crate::artifact::{
 };
 use crate::recipe::{Violation, demand};
 use crate::scans::file::{Grid, MapLines, parse_file};
+use crate::scans::text_shape::TextShape;
 use crate::scans::{TextFormat, parse_text};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
-use faults::{fault_rows, jump_warning};
+use faults::fault_rows;
 use picture::write_pictures;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -27,7 +29,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,6 +41,10 @@ pub struct Ingest {
     /// by their content and need no description.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<TextFormat>,
+    /// True where the heights of instrument files grow away from the road's rubber, as depths do;
+    /// they are turned then. Texts have `invert_z` in their description.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub invert_instrument_heights: bool,
     /// Lines of height maps that are taken as line scans, `rows` or `columns`. Required for maps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_lines: Option<MapLines>,
@@ -70,6 +76,12 @@ fn every_line() -> usize {
 #[allow(clippy::trivially_copy_pass_by_ref)]
 fn is_every_line(step: &usize) -> bool {
     *step == every_line()
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_false(flag: &bool) -> bool {
+    !*flag
 }
 
 fn twelve_pictures() -> usize {
@@ -264,6 +276,15 @@ pub fn inputs(files: &[ScanFile]) -> Vec<Input> {
 /// Windows of a scan, and what became of it.
 type Conditioned = (Vec<LineScan>, ConditioningReport);
 
+/// The line scans of a file, and what is to be told of it.
+struct ReadFile<T> {
+    scans: Vec<T>,
+    /// Whether it is text and not the file of an instrument.
+    is_text: bool,
+    /// Where the description contradicts the file.
+    contradictions: Vec<String>,
+}
+
 /// Reads and conditions the scan files and writes the results; returns warnings.
 ///
 /// # Errors
@@ -275,28 +296,30 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let done = std::sync::atomic::AtomicU64::new(0);
     // Collected first and judged then: a parallel search for an error finds any.
-    let read: Vec<Result<Vec<Conditioned>, StageError>> = files
+    let read: Vec<Result<ReadFile<Conditioned>, StageError>> = files
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
             let bytes = std::fs::read(&file.path)
                 .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
-            let conditioned = read_scans(ingest, file, &bytes)?
+            let ReadFile { scans, is_text, contradictions } = read_scans(ingest, file, &bytes)?;
+            let scans = scans
                 .iter()
                 .map(|scan| condition(scan, &ingest.conditioning))
                 .collect::<Result<Vec<_>, _>>()?;
             let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             (context.progress)(count, files.len() as u64);
-            Ok(conditioned)
+            Ok(ReadFile { scans, is_text, contradictions })
         })
         .collect();
     let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
-    check_equal_grids(read.iter().flatten().flat_map(|(windows, _)| windows))?;
-    let windows = read.iter_mut().flatten().flat_map(|(windows, _)| windows);
-    share_spacing(&mut windows.collect::<Vec<_>>());
+    check_equal_grids(read.iter().flat_map(|file| &file.scans).flat_map(|(windows, _)| windows))?;
+    let scans = read.iter_mut().flat_map(|file| &mut file.scans);
+    share_spacing(&mut scans.flat_map(|(windows, _)| windows).collect::<Vec<_>>());
+    let mut warnings = warnings::of_description(ingest, files, &read);
     let (mut datasets, mut reports) = (Vec::new(), Vec::new());
-    for (file, scans) in files.iter().zip(read) {
-        for (windows, report) in scans {
+    for (file, read) in files.iter().zip(read) {
+        for (windows, report) in read.scans {
             datasets.extend(windows.into_iter().map(|window| dataset(window, file)));
             reports.push(report);
         }
@@ -315,13 +338,18 @@ pub fn run(
     let pictures = write_pictures(&reports, ingest.fault_pictures, pending)?;
     let document = cleaning_markdown(&scans, &faults, &windows, &pictures);
     pending.write_document(CLEANING_FILE, &document)?;
-    let mut warnings = warnings(&reports);
-    warnings.extend(jump_warning(&reports));
+    warnings.extend(warnings::of_scans(&reports));
     Ok(warnings)
 }
 
 /// The line scans of a file: one, or the chosen lines of a height map.
-fn read_scans(ingest: &Ingest, file: &ScanFile, bytes: &[u8]) -> Result<Vec<RawScan>, StageError> {
+fn read_scans(
+    ingest: &Ingest,
+    file: &ScanFile,
+    bytes: &[u8],
+) -> Result<ReadFile<RawScan>, StageError> {
+    /// Enough for the names of the columns and some points.
+    const START: usize = 1 << 16;
     let name = file.path.display().to_string();
     if let Some(scan) = parse_file(&name, bytes).map_err(Box::new)? {
         let lines = match (scan.grid, ingest.map_lines) {
@@ -331,14 +359,21 @@ fn read_scans(ingest: &Ingest, file: &ScanFile, bytes: &[u8]) -> Result<Vec<RawS
                 return Err(StageError::MapLines { path: file.path.clone(), rows, columns });
             }
         };
-        return Ok(scan.line_scans(&file.name, lines, ingest.map_line_step));
+        let mut scans = scan.line_scans(&file.name, lines, ingest.map_line_step);
+        if ingest.invert_instrument_heights {
+            let heights = scans.iter_mut().flat_map(|scan| &mut scan.heights);
+            heights.for_each(|height| *height = -*height);
+        }
+        return Ok(ReadFile { scans, is_text: false, contradictions: Vec::new() });
     }
     let Some(format) = &ingest.text else {
         return Err(StageError::NoTextFormat { path: file.path.clone() });
     };
     let mut scan = parse_text(&name, bytes, format)?;
     scan.name.clone_from(&file.name);
-    Ok(vec![scan])
+    let shape = TextShape::of(&bytes[..bytes.len().min(START)]);
+    let contradictions = shape.map(|shape| shape.contradictions(format)).unwrap_or_default();
+    Ok(ReadFile { scans: vec![scan], is_text: true, contradictions })
 }
 
 fn check_equal_grids<'a>(
@@ -431,17 +466,4 @@ fn window_rows(report: &ConditioningReport) -> Vec<WindowRow> {
         rejected: window.rejected.clone(),
     };
     report.windows.iter().map(row).collect()
-}
-
-fn warnings(reports: &[&ConditioningReport]) -> Vec<String> {
-    let windows = reports.iter().flat_map(|report| &report.windows);
-    let total = windows.clone().count();
-    let rejected: Vec<_> = windows.filter(|window| window.rejected.is_some()).collect();
-    let Some(first) = rejected.first() else { return Vec::new() };
-    let reason = first.rejected.as_deref().unwrap_or_default();
-    vec![format!(
-        "{} of {total} windows were rejected, the first, {}, because {reason}",
-        rejected.len(),
-        first.name
-    )]
 }

@@ -221,9 +221,6 @@ pub enum StageError {
     /// Power spectrum.
     #[error(transparent)]
     Spectrum(#[from] crate::surface::spectrum::SpectrumError),
-    /// Self-affine fit.
-    #[error(transparent)]
-    SelfAffine(#[from] crate::surface::self_affine::SelfAffineError),
     /// Ladder of wavelengths.
     #[error(transparent)]
     Ladder(#[from] crate::surface::ladder::LadderError),

@@ -1,6 +1,6 @@
 //! From a scan as measured to windows on equal spacing, without faults and form.
 
-use super::faults::{FaultOverview, FaultReport, RepeatedPositions};
+use super::faults::{FarHeights, FaultOverview, FaultReport, RepeatedPositions};
 use super::form::{Form, FormError, LARGEST_ORDER, RemovedForm, remove_form};
 use super::resample::{Grid, GridError, block_means, place_on_grid, points_per_cell};
 use super::window::{window_name, windows};
@@ -143,6 +143,8 @@ pub struct ConditioningReport {
     pub faults: Vec<FaultReport>,
     /// Where they are; none for a scan without any.
     pub overview: Option<FaultOverview>,
+    /// Heights of the windows that are kept which no road has; none for most scans.
+    pub far: Option<FarHeights>,
     /// All windows in the order of the track.
     pub windows: Vec<WindowReport>,
 }
@@ -169,6 +171,13 @@ pub enum ConditioningError {
     /// A value of the recipe is out of its range.
     #[error("{key} is {value}; {demand}")]
     Parameter { key: &'static str, value: f64, demand: &'static str },
+    /// Points at the position of the one before, and the recipe wants such scans refused.
+    #[error(
+        "scan {scan}: {count} points are at the position of the point before, the first at \
+         {position_mm} mm; mend the file, or set ingest.conditioning.repeated_positions = \"mean\" \
+         to take the mean of their heights"
+    )]
+    Repeated { scan: String, count: usize, position_mm: f64 },
     /// The positions make no grid.
     #[error("scan {scan}: {source}")]
     Grid { scan: String, source: GridError },
@@ -235,7 +244,7 @@ pub fn condition(
 ) -> Result<(Vec<LineScan>, ConditioningReport), ConditioningError> {
     conditioning.validate()?;
     let name = || scan.name.clone();
-    let (merged, mut found) = faults::sampling(scan, conditioning);
+    let (merged, mut found) = faults::sampling(scan, conditioning)?;
     let (mut raw, fit) = place_on_grid(&merged)
         .map_err(|source| ConditioningError::Grid { scan: name(), source })?;
     let findings = faults::heights(&mut raw, conditioning);
@@ -245,10 +254,11 @@ pub fn condition(
         points_per_cell(raw.spacing, um / 1e6 / conditioning.samples_per_resolution)
     });
     let mut grid = block_means(&raw, points);
+    let is_far = FarHeights::cells(&grid.heights);
     let form = match conditioning.form_extent {
         FormExtent::Window => None,
         FormExtent::Scan => Some(
-            remove_form(&mut grid.heights, conditioning.form)
+            remove(&mut grid.heights, conditioning.form)
                 .map_err(|source| ConditioningError::Form { scan: name(), source })?,
         ),
     };
@@ -270,9 +280,14 @@ pub fn condition(
         form,
         faults: found,
         overview: findings.overview,
+        far: None,
         windows: Vec::new(),
     };
     let kept = cut(&grid, conditioning, &mut report)?;
+    // The cell that a window starts with, by the position it was given.
+    let start = |window: &LineScan| ((window.origin - grid.origin) / grid.spacing).round() as usize;
+    let ranges = kept.iter().map(|window| start(window)..start(window) + window.heights.len());
+    report.far = FarHeights::of(&grid, ranges.flatten().filter(|&cell| is_far[cell]));
     Ok((kept, report))
 }
 
@@ -347,10 +362,24 @@ fn finish(
     }
     match conditioning.form_extent {
         FormExtent::Scan => Ok(None),
-        FormExtent::Window => remove_form(&mut window.heights, conditioning.form)
+        FormExtent::Window => remove(&mut window.heights, conditioning.form)
             .map(Some)
             .map_err(|error| error.to_string()),
     }
+}
+
+/// Removes a form; heights that are nothing else have none left, not the round-off of its fit.
+fn remove(heights: &mut [f64], form: Form) -> Result<RemovedForm, FormError> {
+    /// Share of the largest height that a fit of up to twelfth order leaves of it.
+    const ROUND_OFF: f64 = 1e-12;
+    // `f64::max` passes over NaN.
+    let largest = |z: &[f64]| z.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
+    let before = largest(heights);
+    let removed = remove_form(heights, form)?;
+    if largest(heights) <= ROUND_OFF * before {
+        heights.iter_mut().filter(|z| !z.is_nan()).for_each(|z| *z = 0.0);
+    }
+    Ok(removed)
 }
 
 fn count_missing(heights: &[f64]) -> usize {

@@ -76,7 +76,9 @@ pub struct SelfAffineFit {
 pub enum SelfAffineError {
     /// Too few lags.
     #[error(
-        "{lags} lags between {shortest} m and {longest} m, at least {FEWEST_ON_SLOPE} are needed; widen the range"
+        "{lags} lags between {:.4} and {:.4} mm, at least {FEWEST_ON_SLOPE} are needed; lower \
+         characterise.self_affine_shortest_lag_mm, or raise self_affine_longest_lag_mm or longest_lag_mm",
+        shortest * 1e3, longest * 1e3
     )]
     TooFewLags {
         /// Number of lags in the range.
@@ -88,7 +90,9 @@ pub enum SelfAffineError {
     },
     /// No logarithm.
     #[error(
-        "the correlation at lag {lag} m is {value} m2, no positive number; is the scan flat there?"
+        "the correlation at a lag of {:.4} mm is {value} m2, no positive number: the scan is flat or \
+         repeats itself there; characterise.self_affine_longest_lag_mm ends the fit before",
+        lag * 1e3
     )]
     NotPositive {
         /// The lag in metres.
@@ -98,7 +102,8 @@ pub enum SelfAffineError {
     },
     /// The correlation does not grow with the lag.
     #[error(
-        "the fit gave H = {hurst_exponent}, the correlation does not grow with the lag; shorten the range"
+        "the fit gave H = {hurst_exponent}, the correlation does not grow with the lag; shorten the \
+         range, characterise.self_affine_shortest_lag_mm to self_affine_longest_lag_mm"
     )]
     NotGrowing {
         /// The Hurst exponent found.

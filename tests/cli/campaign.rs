@@ -42,7 +42,7 @@ fn a_run_tells_of_each_stage_and_leaves_standard_output_to_json() {
 #[test]
 fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
     // What is replaced, by what, and parts of the message: file, key, value, what to do.
-    let cases: [(&str, &str, &[&str]); 32] = [
+    let cases: [(&str, &str, &[&str]); 37] = [
         ("seed = 1", "seed = ", &["line 27", "seed ="]),
         ("seed = 1", "sed = 1", &["line 27", "unknown field `sed`", "`seed`"]),
         ("seed = 1", "", &["missing field `seed`"]),
@@ -84,6 +84,31 @@ fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
             "[realise]",
             "[micro]\nrms_slope_threshold = inf\n[realise]",
             &["micro.rms_slope_threshold = inf, wanted: positive and finite"],
+        ),
+        (
+            "[characterise]",
+            "[characterise]\nlambda_s_mm = 2.5\nlambda_c_mm = 0.8",
+            &["characterise.(lambda_s_mm, lambda_c_mm) = (2.5, 0.8)", "the first shorter"],
+        ),
+        (
+            "[characterise]",
+            "[characterise]\nlambda_s_mm = 2.5\nsection_length_mm = 2.5",
+            &["characterise.(lambda_s_mm, section_length_mm) = (2.5, 2.5)"],
+        ),
+        (
+            "[characterise]",
+            "[characterise]\nself_affine_shortest_lag_mm = 2\nself_affine_longest_lag_mm = 1",
+            &["(self_affine_shortest_lag_mm, self_affine_longest_lag_mm) = (2.0, 1.0)"],
+        ),
+        (
+            "[characterise]",
+            "[characterise]\n[characterise.profile_depth]\nhigh_pass_mm = 2",
+            &["characterise.profile_depth.(low_pass_mm, high_pass_mm) = (2.4, 2.0)"],
+        ),
+        (
+            "[characterise]",
+            "[characterise]\n[characterise.profile_depth]\nsegment_mm = 2",
+            &["characterise.profile_depth.(low_pass_mm, segment_mm) = (2.4, 2.0)"],
         ),
         ("mm = 0.5", "mm = inf", &["shortest_wavelength_mm = inf, wanted: positive and finite"]),
         (
@@ -161,7 +186,7 @@ fn bad_scans_are_named_with_line_and_reason_and_leave_no_result() {
     refused("\u{89}PNG\0\0", &["binary data"]);
     refused("a,b\n1,2\n3,4\n", &["no column `x_mm`", "separator"]);
     refused(&good.replace("0.050;", "0.050;x"), &["line 5", "z_um", "is not a number"]);
-    refused(&good.replace("0.075;", "0.050;"), &["line 6", "is there twice"]);
+    refused(&good.replace("0.075;", "0.010;"), &["line 6", "comes after 0.05", "`x_column`"]);
     let lines = |keep: usize| good.lines().take(keep).map(|l| format!("{l}\n")).collect::<String>();
     refused(&lines(200), &["same spacing and length", "window_length_mm"]);
     let gaps = |every: usize| -> String {

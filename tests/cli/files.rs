@@ -158,12 +158,14 @@ fn clumsy_files_are_answered_clearly() {
         "aISO-1.0\nNumPoints=2\nNumProfiles=1\nXscale=1e-6\nYscale=0\nZscale=1\n\
                                 DataType=7\n*\nBAD BAD\n*\n",
     );
-    let errors: [(&[u8], &[&str]); 8] = [
+    let errors: [(&[u8], &[&str]); 10] = [
         (b"", &["is empty"]),
         (&sdf[..sdf.len() / 2], &["line ", "expected 400", "copy the file again"]),
         (&x3p[..x3p.len() / 2], &["no zip archive", "copy the file again"]),
         (&changed("NumPoints = 400", "NumPoints = 4000000000"), &["line 5", "limit of 268435456"]),
         (&changed("Xscale = 1e-5", "Xscale = 1e5"), &["line 7", "spacing", "check"]),
+        (&changed("Zscale = 1", "Zscale = 0"), &["line 9", "Zscale is `0`", "positive"]),
+        (&changed("Zscale = 1", "Zscale = -1"), &["line 9", "Zscale is `-1`", "positive"]),
         (missing.as_bytes(), &["all 2 heights are missing"]),
         (b"PK\x05\x06\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", &["is none of"]),
         (b"no\nnumbers\n", &["without lines of numbers"]),
@@ -180,7 +182,7 @@ fn clumsy_files_are_answered_clearly() {
         project("src").display(),
         folder.path().display()
     ));
-    assert!(directory.error(2).contains("src"));
+    assert!(directory.error(2).contains("src is a folder; give the file of one scan"));
     // The name says nothing; two lines of names, decimal commas, UTF-16 with a mark are seen through.
     let utf16: Vec<u8> = "\u{feff}x;z\r\nmm;um\r\n0,0;1,5\r\n0,1;2,5\r\n0,2;2,0\r\n"
         .encode_utf16()
@@ -190,9 +192,37 @@ fn clumsy_files_are_answered_clearly() {
     let found = inspected(&path);
     assert_eq!((&found["points"], &found["encoding"]), (&json!(3), &json!("utf-16le")));
     assert!((found["mean_m"].as_f64().unwrap() / 2e-6 - 1.0).abs() < 1e-12, "{found}");
+    let unmarked: Vec<u8> =
+        "x_mm;z_um\n0.0;1.5\n0.1;2.5\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    fs::write(&path, unmarked).unwrap();
+    assert_eq!(inspected(&path)["encoding"], "utf-16le");
+    fs::write(&path, "x_mm;z_um\n0;1,234.5\n1;2,345.5\n").unwrap();
+    assert!(inspected(&path)["unread"].as_str().unwrap().contains("`1,234.5` separates thousands"));
     let row = "1 2 3 4 5 6 7 8 9 10 11 12 13\n";
     fs::write(&path, row.repeat(3)).unwrap();
     assert!(inspected(&path)["unread"].as_str().unwrap().contains("height map"));
+}
+
+/// What describes a text is refused where it would be passed over.
+#[test]
+fn options_of_a_text_are_refused_for_the_file_of_an_instrument() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = "--invert-z --cut-start-mm 5 --x-unit mm --encoding utf-16le";
+    let inspect = format!("inspect {{}} {options}");
+    let convert = format!("convert {{}} --to {}/a.csv {options}", folder.path().display());
+    for command in [&inspect, &convert] {
+        let error = asperity_at(command, &project("data/scans/formats/scan_1.x3p")).error(2);
+        let given = "leave out --x-unit, --invert-z, --encoding, --cut-start-mm";
+        for part in ["scan_1.x3p", given, "ingest.invert_instrument_heights"] {
+            assert!(error.contains(part), "`{part}` is not in {error}");
+        }
+    }
+    assert!(!folder.path().join("a.csv").exists());
+    let folder = asperity_at("inspect {} --x-unit mm", folder.path()).error(2);
+    assert!(folder.contains("leave out --x-unit"), "{folder}");
+    let text = project("data/scans/specimen/scan_01.txt");
+    let alone = asperity_at("inspect {} --encoding windows-1252", &text).error(2);
+    assert!(alone.contains("give --separator"), "{alone}");
 }
 
 /// Truncation at many lengths and a flipped bit at many places: an answer or an error with the

@@ -203,6 +203,8 @@ fn truncated_and_foreign_files_are_named() {
         fs::write(&path, bytes).unwrap();
         let error = asperity_at("inspect {}", &path).error(2);
         assert!(error.contains(part) && error.contains("/file"), "{error}");
+        // A file that is not asperity's is not to be deleted.
+        assert!(part != "no readable manifest" || !error.contains("delete"), "{error}");
     }
     assert!(asperity("inspect no/such").error(2).contains("no/such"));
     let folder = asperity_at("inspect {}", &project("src")).error(2);
@@ -213,7 +215,14 @@ fn truncated_and_foreign_files_are_named() {
 fn a_scan_is_summarised_in_the_units_given() {
     let path = project("data/scans/specimen/scan_01.txt");
     let text = asperity_at(SCAN, &path).result();
-    contains_all(&text, &["8000 points, 240 missing (3.0 %)", "median 2.00000 um", "505.000"]);
+    contains_all(
+        &text,
+        &[
+            "8000 points, 240 missing (3.0 %)",
+            "2.00000 um by least squares, median 2.00000 um",
+            "505.000",
+        ],
+    );
     let json = asperity_at(&format!("{SCAN} --json"), &path).json();
     assert_eq!((&json["kind"], &json["missing"]), (&json!("scan"), &json!(240)));
     assert_eq!(json["first_points"][0][0], 0.0);
@@ -244,7 +253,14 @@ fn a_real_road_scan_can_be_described_by_options() {
     // Columns by number: `Distance (mm)` has a blank, at which the helper would split.
     let options = "inspect {} --separator tab --skip-until *****DATA***** --x-column 2 --x-unit mm --z-column 3 --z-unit mm";
     let text = asperity_at(options, &path).result();
-    contains_all(&text, &["51067 points, 4373 missing (8.6 %)", "0 to 1914.41 mm"]);
+    let spacing = "37.4890 um by least squares, median 37.0000 um";
+    contains_all(&text, &["51067 points, 4373 missing (8.6 %)", "0 to 1914.41 mm", spacing]);
+    assert!(!text.contains("WARNING"), "{text}");
+    let wrong = asperity_at(&options.replace("--x-unit mm", "--x-unit um"), &path).result();
+    contains_all(
+        &wrong,
+        &["WARNING", "`Distance (mm)` states mm, the description x_unit = \"um\""],
+    );
 }
 
 #[test]

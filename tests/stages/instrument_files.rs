@@ -1,7 +1,7 @@
 //! ingest of instrument files beside text.
 
 use super::{Campaign, recipe, try_run};
-use asperity::artifact::RunView;
+use asperity::artifact::{Manifest, RunView};
 use asperity::pipeline::Selection;
 use asperity::scans::file::{Grid, ScanFile, write_x3p};
 use asperity::stages::Stage;
@@ -39,6 +39,89 @@ fn instrument_files_and_texts_are_read_side_by_side() {
     // The name says nothing: the content does.
     write(&campaign, "scans/x3p_scan.dat", 1);
     assert_eq!(windows(&campaign), ["track_0", "track_1", "track_2", "x3p_scan"]);
+}
+
+/// Warnings of ingest.
+fn warnings(campaign: &Campaign) -> Vec<String> {
+    try_run(&recipe(campaign), &campaign.path("out"), ONLY_INGEST).unwrap();
+    let text = campaign.read("out/ingest/manifest.json");
+    serde_json::from_str::<Manifest>(&text).unwrap().warnings
+}
+
+#[test]
+fn heights_of_instruments_are_turned_where_the_recipe_says_so() {
+    let heights = |key: &str| {
+        let campaign = Campaign::new();
+        write(&campaign, "a.x3p", 1);
+        campaign.edit("recipe.toml", r#"["scans"]"#, &format!("[\"a.x3p\"]\n{key}"));
+        let text = campaign.read("recipe.toml");
+        let section = text.find("[ingest.text]").unwrap()..text.find("[ingest.cond").unwrap();
+        campaign.edit("recipe.toml", &text[section], "");
+        assert_eq!(warnings(&campaign), Vec::<String>::new());
+        read_windows(&RunView::of(campaign.path("out"))).unwrap().remove(0).heights
+    };
+    let (plain, turned) = (heights(""), heights("invert_instrument_heights = true"));
+    for (plain, turned) in plain.iter().zip(&turned) {
+        // The line taken off is fitted to turned numbers.
+        approx::assert_abs_diff_eq!(*plain, -turned, epsilon = 1e-18);
+    }
+}
+
+#[test]
+fn what_describes_no_file_and_units_that_contradict_the_file_are_warned_of() {
+    let campaign = Campaign::new();
+    assert_eq!(warnings(&campaign), Vec::<String>::new());
+    campaign.edit("recipe.toml", "x_unit = \"mm\"", "x_unit = \"um\"");
+    let told = warnings(&campaign);
+    let parts = ["3 of 3 files", "track_0", "`x_mm` states mm", "x_unit = \"um\""];
+    assert!(told.len() == 1 && parts.iter().all(|part| told[0].contains(part)), "{told:?}");
+
+    let campaign = Campaign::new();
+    write(&campaign, "a.x3p", 1);
+    campaign.edit("recipe.toml", r#"["scans"]"#, r#"["a.x3p"]"#);
+    let told = warnings(&campaign);
+    assert!(told.len() == 1 && told[0].starts_with("[ingest.text] describes no scan"), "{told:?}");
+    let campaign = Campaign::new();
+    let key = "[\"scans\"]\ninvert_instrument_heights = true";
+    campaign.edit("recipe.toml", r#"["scans"]"#, key);
+    let told = warnings(&campaign);
+    assert!(told.len() == 1 && told[0].contains("ingest.text.invert_z"), "{told:?}");
+}
+
+#[test]
+fn repeated_positions_of_a_text_are_averaged_or_refused() {
+    let campaign = Campaign::new();
+    let text = campaign.read("scans/track_0.txt");
+    let line = text.lines().nth(60).unwrap();
+    let (position, _) = line.split_once(';').unwrap();
+    campaign.edit("scans/track_0.txt", line, &format!("{line}\n{position};400"));
+    assert_eq!(windows(&campaign), ["track_0", "track_1", "track_2"]);
+    let refuse = "\"slope\"\nrepeated_positions = \"refuse\"";
+    campaign.edit("recipe.toml", "\"slope\"", refuse);
+    let error = try_run(&recipe(&campaign), &campaign.path("out"), ONLY_INGEST).unwrap_err();
+    let text = error.to_string();
+    let parts = ["track_0: 1 points", "ingest.conditioning.repeated_positions = \"mean\"", " mm"];
+    assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+}
+
+#[test]
+fn heights_that_no_road_has_are_warned_of_until_they_are_cut() {
+    let campaign = Campaign::new();
+    let text = campaign.read("scans/track_1.txt");
+    let plate = |(i, line): (usize, &str)| match line.split_once(';') {
+        Some((position, _)) if (22..30).contains(&i) => format!("{position};48000\n"),
+        _ => format!("{line}\n"),
+    };
+    let plated: String = text.lines().enumerate().map(plate).collect();
+    campaign.write("scans/track_1.txt", &plated);
+    // Without the detector of spikes, which would take so short a plate.
+    campaign.edit("recipe.toml", "\"slope\"", "\"slope\"\nspike_threshold = 0.0");
+    let told = warnings(&campaign);
+    let parts = ["1 of 3 scans", "track_1, 8 between 0.5 and 0.7 mm", "cut_start_mm"];
+    assert!(told.iter().any(|told| parts.iter().all(|part| told.contains(part))), "{told:?}");
+    let cut = "\"slope\"\nvalid_range_mm = [-1.0, 1.0]";
+    campaign.edit("recipe.toml", "\"slope\"", cut);
+    assert_eq!(warnings(&campaign), Vec::<String>::new());
 }
 
 #[test]

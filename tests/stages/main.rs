@@ -6,6 +6,7 @@ mod common;
 
 mod bem;
 mod changes;
+mod characterise;
 mod damage;
 mod golden;
 mod hybrid;

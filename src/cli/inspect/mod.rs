@@ -18,6 +18,7 @@ use serde::Serialize;
 use super::CliError;
 use super::output::{json, print};
 use crate::scans::file::{Family, Grid, read_file};
+use crate::scans::text_shape::TextShape as Shape;
 use artifact::{Arrays, Table};
 use folder::{ManifestFile, Run, Stage};
 use instrument::InstrumentFile;
@@ -81,17 +82,23 @@ impl Inspect {
     fn find(&self) -> Result<Finding, CliError> {
         let path = &self.path;
         if path.is_dir() {
+            self.scan.refuse(path, "a folder")?;
             return folder::read(path);
         }
         let start = first_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
-        Ok(match Format::of(&start) {
+        let format = Format::of(&start);
+        if let Some(what) = format.not_text() {
+            self.scan.refuse(path, what)?;
+        }
+        Ok(match format {
             Format::Arrow => Finding::Table(Table::read(path)?),
             Format::Hdf5 => Finding::Arrays(Arrays::read(path)?),
             Format::Json if Solve::is_in(path) => Finding::Solve(Solve::read(path)?),
             Format::Json => Finding::Manifest(ManifestFile::read(path)?),
             Format::Instrument => instrument_file(path)?,
             Format::Text => self.text_scan(path)?,
+            Format::Binary if self.scan.are_given() || is_utf_16(&start) => self.text_scan(path)?,
             Format::Empty => return Err(foreign(path, "is empty")),
             Format::Binary => {
                 return Err(foreign(
@@ -174,6 +181,24 @@ impl Format {
             Self::Text
         }
     }
+}
+
+impl Format {
+    /// What a file of the format is, where that is certainly no text.
+    fn not_text(&self) -> Option<&'static str> {
+        match self {
+            Self::Arrow => Some("a table"),
+            Self::Hdf5 => Some("a file of arrays"),
+            Self::Json => Some("JSON"),
+            Self::Instrument => Some("the file of an instrument, which states its units"),
+            Self::Text | Self::Binary | Self::Empty => None,
+        }
+    }
+}
+
+/// UTF-16 without a mark has the zeros of binary data.
+fn is_utf_16(start: &[u8]) -> bool {
+    Shape::of(start).is_some_and(|shape| shape.encoding.starts_with("utf-16"))
 }
 
 fn first_bytes(path: &Path) -> std::io::Result<Vec<u8>> {

@@ -113,11 +113,12 @@ pub(super) fn read_manifest(path: &Path) -> Result<Manifest, CliError> {
         version: u32,
     }
     let unreadable = |error: serde_json::Error| {
-        CliError::input(ArtifactError::Unreadable {
-            path: path.to_path_buf(),
-            format: "manifest",
-            reason: error.to_string(),
-        })
+        // The file may be anyone's: nothing is said of deleting it.
+        CliError::input(format!(
+            "{} is JSON, but no readable manifest or stored solve ({error}): it is truncated, \
+             damaged or not made by asperity",
+            path.display()
+        ))
     };
     let bytes = std::fs::read(path)
         .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;

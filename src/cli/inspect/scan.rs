@@ -4,14 +4,17 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
-use statrs::statistics::{Data, OrderStatistics};
 
 use super::foreign;
 use crate::cli::output::{aligned, significant};
 use crate::cli::{CliError, values};
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use crate::scans::text_shape::TextShape;
 use crate::scans::{TextFormat, read_text};
 use crate::surface::RawScan;
+use crate::surface::faults::merge_repeated;
+use crate::surface::resample::place_on_grid;
+use statrs::statistics::{Data, OrderStatistics};
 
 const FIRST_POINTS: usize = 5;
 
@@ -71,14 +74,53 @@ pub(in crate::cli) struct ScanOptions {
 }
 
 impl ScanOptions {
-    /// Whether any of the options that describe a text is given; the ones with defaults need others.
+    /// The options that are given and differ from their defaults.
+    fn given(&self) -> Vec<&'static str> {
+        let default_missing = ["", "NaN", "BAD"];
+        [
+            ("--separator", self.separator.is_some()),
+            ("--x-column", self.x_column.is_some()),
+            ("--x-unit", self.x_unit.is_some()),
+            ("--x-spacing-um", self.x_spacing_um.is_some()),
+            ("--z-column", self.z_column.is_some()),
+            ("--z-unit", self.z_unit.is_some()),
+            ("--invert-z", self.invert_z),
+            ("--no-header", self.no_header),
+            ("--decimal-mark", self.decimal_mark != DecimalMark::Point),
+            ("--comment", self.comment.is_some()),
+            ("--skip-lines", self.skip_lines > 0),
+            ("--skip-until", self.skip_until.is_some()),
+            ("--missing", self.missing != default_missing),
+            ("--encoding", self.encoding != "utf-8"),
+            ("--cut-start-mm", self.cut_start_mm != 0.0),
+            ("--cut-end-mm", self.cut_end_mm != 0.0),
+        ]
+        .into_iter()
+        .filter_map(|(option, given)| given.then_some(option))
+        .collect()
+    }
+
+    /// Whether any of the options that describe a text is given.
     pub(super) fn are_given(&self) -> bool {
-        self.separator.is_some()
-            || self.x_column.is_some()
-            || self.x_unit.is_some()
-            || self.x_spacing_um.is_some()
-            || self.z_column.is_some()
-            || self.z_unit.is_some()
+        !self.given().is_empty()
+    }
+
+    /// Refuses options for the file at `path`, which is no text but `what`.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] that names them.
+    pub(in crate::cli) fn refuse(&self, path: &Path, what: &str) -> Result<(), CliError> {
+        let given = self.given();
+        if given.is_empty() {
+            return Ok(());
+        }
+        let turn = match self.invert_z {
+            true => "; a recipe turns files of instruments by ingest.invert_instrument_heights",
+            false => "",
+        };
+        let given = given.join(", ");
+        let problem = format!("is {what}, no text: leave out {given}{turn}");
+        Err(foreign(path, &problem))
     }
 
     /// Reads the text file at `path`.
@@ -94,7 +136,9 @@ impl ScanOptions {
             foreign(path, &problem)
         })?;
         let scan = read_text(path, &format).map_err(CliError::input)?;
-        Ok(Scan::of(path, scan))
+        let shape = std::fs::read(path).ok().and_then(|bytes| TextShape::of(&bytes));
+        let contradictions = shape.map(|shape| shape.contradictions(&format)).unwrap_or_default();
+        Ok(Scan { contradictions, ..Scan::of(path, scan) })
     }
 
     /// # Errors
@@ -144,7 +188,7 @@ pub(super) struct Scan {
     format: &'static str,
     pub(super) points: usize,
     pub(super) missing: usize,
-    /// Median distance of neighbouring points.
+    /// Of the least-squares line through the positions, which ingest takes as well.
     pub(super) spacing_m: f64,
     pub(super) mean_m: f64,
     /// Of the population of valid points.
@@ -159,6 +203,11 @@ pub(super) struct Scan {
     mean_um: f64,
     /// Root of the mean square about the mean, before form and tilt are removed.
     rms_um: f64,
+    /// Points at the position of the point before.
+    repeated: usize,
+    /// Where the options contradict the names of the columns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    contradictions: Vec<String>,
     /// x in mm and z in um; absent where missing.
     first_points: Vec<(f64, Option<f64>)>,
 }
@@ -166,6 +215,8 @@ pub(super) struct Scan {
 impl Scan {
     /// The readers give two points or more and at least one height.
     pub(super) fn of(path: &Path, scan: RawScan) -> Self {
+        let (merged, repeated) = merge_repeated(&scan);
+        let fitted = place_on_grid(&merged).ok().map(|(grid, _)| grid.spacing);
         let RawScan { positions, heights, .. } = scan;
         let steps: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]) * 1e6).collect();
         let present: Vec<f64> =
@@ -189,13 +240,16 @@ impl Scan {
             smallest_spacing_um,
             largest_spacing_um,
             median_spacing_um,
-            spacing_m: median_spacing_um / 1e6,
+            // Positions that make no grid have no line through them.
+            spacing_m: fitted.unwrap_or(median_spacing_um / 1e6),
             mean_m: mean_um / 1e6,
             std_m: rms_um / 1e6,
             lowest_um: lowest(&present),
             highest_um: highest(&present),
             mean_um,
             rms_um,
+            repeated,
+            contradictions: Vec::new(),
             first_points: positions.iter().zip(&heights).take(FIRST_POINTS).map(point).collect(),
         }
     }
@@ -203,14 +257,15 @@ impl Scan {
     pub(super) fn text(&self) -> String {
         let range = |from: f64, to: f64| format!("{} to {}", significant(from), significant(to));
         let share = 100.0 * self.missing as f64 / self.points as f64;
-        let lines = aligned(&[
+        let mut lines = vec![
             ("scan", self.path.display().to_string()),
             ("shape", format!("{} points, {} missing ({share:.1} %)", self.points, self.missing)),
             ("x", range(self.start_mm, self.end_mm) + " mm"),
             (
                 "spacing",
                 format!(
-                    "median {} um, {} um",
+                    "{} um by least squares, median {} um, {} um",
+                    significant(self.spacing_m * 1e6),
                     significant(self.median_spacing_um),
                     range(self.smallest_spacing_um, self.largest_spacing_um)
                 ),
@@ -218,7 +273,13 @@ impl Scan {
             ("z", range(self.lowest_um, self.highest_um) + " um"),
             ("mean of z", significant(self.mean_um) + " um"),
             ("rms of z", significant(self.rms_um) + " um about the mean, form not removed"),
-        ]);
+        ];
+        if self.repeated > 0 {
+            let repeated = format!("{} points at the position of the one before", self.repeated);
+            lines.push(("repeated", repeated));
+        }
+        lines.extend(self.contradictions.iter().map(|text| ("WARNING", text.clone())));
+        let lines = aligned(&lines);
         let point = |(x, z): &(f64, Option<f64>)| {
             let z = z.map_or("missing".into(), significant);
             format!("{:>12}  {z:>12}\n", significant(*x))

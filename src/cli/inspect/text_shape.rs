@@ -48,7 +48,7 @@ pub(super) struct TextShape {
 #[derive(Debug, Serialize)]
 struct Statistics {
     missing: usize,
-    /// Median distance of neighbouring points.
+    /// Of the least-squares line through the positions, which ingest takes as well.
     spacing_m: f64,
     mean_m: f64,
     /// Of the population of valid points.
@@ -169,6 +169,12 @@ fn statistics(
             "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, \
              SDF or, from Gwyddion, as text with its comment lines",
             shape.columns.len()
+        ));
+    }
+    if let Some(cell) = &shape.thousands {
+        return Err(format!(
+            "not read: `{cell}` separates thousands, which no description can tell from a decimal \
+             mark; export the file without"
         ));
     }
     let format = shape.format().map_err(|keys| {

@@ -95,12 +95,16 @@ fn refuse_codes(compression: u64, check: u64, place: &Place) -> Result<(), FileP
 }
 
 /// A profile often states 0 as the distance to a next one.
-fn check_spacings(scales: &[f64; 3], rows: usize, [x, y]: [Place; 2]) -> Result<(), FileProblem> {
+fn check_scales(scales: &[f64; 3], rows: usize, [x, y, z]: [Place; 3]) -> Result<(), FileProblem> {
     spacing(x, scales[0])?;
     if rows > 1 {
         spacing(y, scales[1])?;
     }
-    Ok(())
+    if scales[2] > 0.0 && scales[2].is_finite() {
+        return Ok(());
+    }
+    let expected = "positive, metres for a unit of the heights; export the file again";
+    Err(unexpected(z, "Zscale", scales[2], expected))
 }
 
 fn read_binary(bytes: &[u8], version: Version) -> Result<(Header, Vec<f64>), FileProblem> {
@@ -117,9 +121,9 @@ fn read_binary(bytes: &[u8], version: Version) -> Result<(Header, Vec<f64>), Fil
     };
     let declared = (length("NumPoints")?, length("NumProfiles")?);
     let (columns, rows) = count(place, declared.0, declared.1)?;
-    let scale_places = [cursor.place(), Place::Byte(cursor.offset() + 8)];
+    let scale_places = [0, 8, 16].map(|offset| Place::Byte(cursor.offset() + offset));
     let scales = [cursor.f64("Xscale")?, cursor.f64("Yscale")?, cursor.f64("Zscale")?];
-    check_spacings(&scales, rows, scale_places)?;
+    check_scales(&scales, rows, scale_places)?;
     cursor.f64("Zresolution")?;
     let place = cursor.place();
     let compression = cursor.u8("Compression")?;
@@ -220,11 +224,8 @@ fn text_header(fields: &[(String, String, usize)]) -> Result<Header, FileProblem
     let (columns, rows) = count(Place::Line(points.1), declared.0, declared.1)?;
     let scale = |key| find(key).and_then(|field| value::<f64>(field, key));
     let scales = [scale("Xscale")?, scale("Yscale")?, scale("Zscale")?];
-    check_spacings(
-        &scales,
-        rows,
-        [Place::Line(find("Xscale")?.1), Place::Line(find("Yscale")?.1)],
-    )?;
+    let [x, y, z] = ["Xscale", "Yscale", "Zscale"].map(|key| find(key).map(|field| field.1));
+    check_scales(&scales, rows, [x?, y?, z?].map(Place::Line))?;
     let code = |key| match find(key) {
         Ok(field) => value::<u64>(field, key).map(|code| (code, field.1)),
         Err(_) => Ok((0, 1)),

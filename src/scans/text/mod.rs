@@ -32,7 +32,7 @@ pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError>
 }
 
 /// Reads the line scan in the bytes of a text file. Positions and heights are converted to
-/// metres, missing heights are NaN; positions grow strictly from line to line.
+/// metres, missing heights are NaN; positions grow from line to line or stay.
 ///
 /// # Errors
 /// [`ScanError`] that tells of the file as `name`.
@@ -123,13 +123,10 @@ fn push(
     if let Some(x) = columns.x {
         let position = cells.position(&record[x]).map_err(|problem| (x, problem))?;
         if let Some(&previous) = points.positions.last() {
-            let text = || record[x].trim().to_owned();
-            if position == previous {
-                return Err((x, ScanProblem::Repeated { text: text() }));
-            }
+            // Equal positions are a fault of the track, which conditioning merges or refuses.
             if position < previous {
-                let previous = previous.to_string();
-                return Err((x, ScanProblem::NotIncreasing { text: text(), previous }));
+                let (text, previous) = (record[x].trim().to_owned(), previous.to_string());
+                return Err((x, ScanProblem::NotIncreasing { text, previous }));
             }
         }
         points.positions.push(position);
@@ -173,7 +170,11 @@ fn check_plausible(scan: &RawScan, format: &TextFormat) -> Result<(), ScanProble
     // No profilometer of texture has a range of a metre.
     const LARGEST_RANGE_M: f64 = 1.0;
 
-    let steps = || scan.positions.windows(2).map(|pair| pair[1] - pair[0]);
+    let all_steps = scan.positions.windows(2).map(|pair| pair[1] - pair[0]);
+    let steps = || all_steps.clone().filter(|step| *step > 0.0);
+    if steps().next().is_none() {
+        return Err(ScanProblem::OnePosition { points: scan.positions.len() });
+    }
     // The median is within the range where every step is; most files need none.
     if !steps().all(|step| SPACINGS_M.contains(&step)) {
         let spacing = Data::new(steps().collect::<Vec<_>>()).median();

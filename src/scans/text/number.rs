@@ -1,6 +1,7 @@
 //! Cells of a text file as numbers.
 
 use crate::scans::description::DecimalMark;
+use crate::scans::thousands::thousands_mark;
 use crate::scans::{ScanProblem, TextFormat};
 
 /// What the cells of a file mean: its decimal mark and its markers of missing heights.
@@ -59,7 +60,13 @@ impl Cells {
         if parse(cell, self.mark).is_some_and(f64::is_infinite) {
             ScanProblem::Infinite { text }
         } else if parse(cell, other).is_some_and(f64::is_finite) {
-            ScanProblem::DecimalMark { text, mark }
+            let hint = match thousands_mark(cell, self.mark) {
+                Some(_) => "; if it separates thousands, export the file without",
+                None => "",
+            };
+            ScanProblem::DecimalMark { text, mark, hint }
+        } else if let Some(mark) = thousands_mark(cell, self.mark) {
+            ScanProblem::Thousands { text, mark }
         } else {
             ScanProblem::NotANumber { text, hint }
         }

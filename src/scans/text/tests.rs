@@ -223,10 +223,29 @@ fn bad_files_say_where_and_what_to_do() {
         &plain,
         "scan, line 4, column 1 (`x`): the position 0.5 comes after 1",
     );
+    let huge = format!("x,z\n0,-1{0}\n1,1{0}\n", "0".repeat(300));
+    assert_fails(huge, &plain, "scan: heights from -1.000e297 m to 1.000e297 m are no road");
+    // Repeated positions are left to conditioning, but one position alone is no track.
+    let repeated = parse_text("a", b"x,z\n0,1\n1,2\n1.0,4\n2,4\n", &plain).unwrap();
+    assert_eq!(repeated.positions, [0.0, 1e-3, 1e-3, 2e-3]);
+    assert_fails("x,z\n1,1\n1,2\n", &plain, "scan: all 2 points have the same position; choose");
+    // Each three times: the median step is 0.
+    let thrice = "x,z\n0,1\n0,1\n0,1\n1,2\n1,2\n1,2\n";
+    assert_eq!(parse_text("a", thrice.as_bytes(), &plain).unwrap().heights.len(), 6);
+    let semicolon = format(
+        "separator = ';'\nx_column = 1\nx_unit = 'mm'\nz_column = 2\nz_unit = 'mm'\nmissing = []",
+    );
     assert_fails(
-        "x,z\n0,1\n1,2\n1.0,2\n",
-        &plain,
-        "scan, line 4, column 1 (`x`): the position 1.0 is there twice",
+        "x;z\n0;1\n1;1,234.5\n",
+        &semicolon,
+        "scan, line 3, column 2 (`z`): `1,234.5` separates thousands by `,`",
+    );
+    let german = TextFormat { decimal_mark: DecimalMark::Comma, ..semicolon };
+    assert_fails(
+        "x;z\n0,5;1\n1,5;12.345\n",
+        &german,
+        "scan, line 3, column 2 (`z`): `12.345` has the wrong decimal mark; set `decimal_mark = \".\"`; \
+         if it separates thousands, export the file without",
     );
     assert_fails("x,z\n0,NaN\n1,\n", &plain, "scan: all 2 heights are missing");
     assert_fails("x,z\n0,1\n1\n2,3\n", &plain, "scan, line 3: ends after 1 cells, 2 are needed");

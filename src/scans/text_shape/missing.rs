@@ -10,11 +10,11 @@ pub(super) fn is_word(cell: &str) -> bool {
     WORDS.iter().any(|word| word.eq_ignore_ascii_case(cell))
 }
 
-/// The words among the cells that a description has to list.
-pub(super) fn words(cells: impl Iterator<Item = String>) -> Vec<String> {
+/// The words that a description has to list, each once.
+pub(super) fn words(words: impl Iterator<Item = String>) -> Vec<String> {
     let known = default_missing();
     let mut found: Vec<String> = Vec::new();
-    for cell in cells.filter(|cell| is_word(cell)) {
+    for cell in words {
         if !known.iter().chain(&found).any(|word| word.eq_ignore_ascii_case(&cell)) {
             found.push(cell);
         }

@@ -112,6 +112,71 @@ fn two_lines_of_names_and_heights_alone() {
     assert_eq!((found.rows, found.format()), (3, Err(vec!["x_spacing_um"])));
 }
 
+#[test]
+fn marks_that_are_not_known_are_proposed_and_keep_the_header() {
+    for mark in ["***", "#N/A", "Saturated", "-nan(ind)", "-1.#IND", "inf"] {
+        let height = |i: usize| match i {
+            0 | 7 | 8 => mark.to_owned(),
+            _ => format!("{}", (i % 10) as f64 - 4.5),
+        };
+        let line = |i: usize| format!("{:.2};{}\n", i as f64 / 100.0, height(i));
+        let text = String::from("x_mm;z_um\n") + &(0..3000).map(line).collect::<String>();
+        let found = shape(text.as_bytes());
+        assert_eq!(
+            (&found.missing, found.rows, found.header),
+            (&vec![mark.to_owned()], 3000, true)
+        );
+        let scan = parse_text("a", text.as_bytes(), &description(&found)).unwrap();
+        assert_eq!(scan.heights.iter().filter(|z| z.is_nan()).count(), 3, "{mark}");
+    }
+    // What stands before and after the points begins with a word.
+    let found = shape(b"Speed;50\nx_mm;z_um\n0;1\n1;2\n2;1\nMean;5\n");
+    assert_eq!((found.rows, found.skip_lines, found.missing.len()), (3, 1, 0));
+}
+
+#[test]
+fn positions_may_be_there_twice_and_may_not_turn_back() {
+    let grows = |text: &str| shape(text.as_bytes()).columns[0].grows;
+    assert!(grows("0;5\n0;4\n1;5\n1;4\n2;5\n2;4\n"));
+    assert!(!grows("0;5\n1;4\n0.5;5\n2;4\n"));
+    assert!(!grows("0;5\n0;4\n0;5\n0;4\n1;4\n"));
+}
+
+#[test]
+fn separated_thousands_are_seen_and_are_no_marks_of_gaps() {
+    let line = |i: usize| format!("{:.4};{},{:03}.25\n", i as f64 * 0.05, 1 + i, 7 * i);
+    let text = String::from("x_mm;z_um\n") + &(0..100).map(line).collect::<String>();
+    let found = shape(text.as_bytes());
+    assert_eq!((found.thousands.as_deref(), found.rows), (Some("1,000.25"), 100));
+    assert_eq!(found.missing, Vec::<String>::new());
+    let german = shape(b"x_mm;z_um\n0,05;1.234\n0,10;345\n0,15;2.345\n");
+    assert_eq!(
+        (german.decimal_mark, german.thousands.as_deref()),
+        (DecimalMark::Comma, Some("1.234"))
+    );
+    // Three decimals behind a comma are no thousands.
+    let decimals = shape(b"x_mm;z_um\n1,000;1,234\n1,050;2,345\n1,100;1,345\n");
+    assert_eq!((decimals.decimal_mark, decimals.thousands), (DecimalMark::Comma, None));
+}
+
+#[test]
+fn a_description_that_contradicts_the_names_of_the_columns_is_told() {
+    let found = shape(b"Distance (mm);Depth (mm)\n0;1\n0.1;2\n0.2;1\n");
+    let format = found.format().unwrap();
+    assert_eq!(found.contradictions(&format), Vec::<String>::new());
+    let wrong = TextFormat { x_unit: Some(LengthUnit::Um), ..format.clone() };
+    assert_eq!(
+        found.contradictions(&wrong),
+        ["the column `Distance (mm)` states mm, the description x_unit = \"um\""]
+    );
+    let by_number =
+        TextFormat { z_column: Column::Number(2), z_unit: Some(LengthUnit::M), ..format };
+    assert_eq!(found.contradictions(&by_number).len(), 1);
+    // A number among columns that another separator makes is another column.
+    let other = TextFormat { separator: Separator::Comma, ..by_number };
+    assert_eq!(found.contradictions(&other), Vec::<String>::new());
+}
+
 /// The texts beside the reference files.
 #[test]
 fn reference_texts_have_their_shapes() {

@@ -72,9 +72,10 @@ pub struct IsotropicRow {
     #[schemars(extend("unit" = "rad/mm"))]
     pub wavenumber_rad_mm: f64,
     /// Density by the Abel inverse of the averaged line spectrum; it enlarges scatter, and may be
-    /// negative where the line spectrum rises.
+    /// negative where the line spectrum rises; absent where bins that are too narrow leave no
+    /// finite slope between them.
     #[schemars(extend("unit" = "mm^4"))]
-    pub abel_density_mm4: f64,
+    pub abel_density_mm4: Option<f64>,
     /// Density by the self-affine form with the Hurst exponent of the averaged spectrum; absent
     /// where that has none above -1/2. It holds between roll-off and cut-off.
     #[schemars(extend("unit" = "mm^4"))]
@@ -83,7 +84,7 @@ pub struct IsotropicRow {
 
 impl Row for IsotropicRow {
     const SCHEMA: &'static str = "asperity.characterise.isotropic_spectrum";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Hurst exponent by one of two methods, with the range it was fitted on.
@@ -209,7 +210,8 @@ pub(super) fn hurst_rows(
     shortest_reliable: f64,
     shortest_lag_mm: f64,
 ) -> (Vec<HurstRow>, Vec<String>) {
-    let bend = self_affine.last().map_or(0.0, |row| row.parallel_length_mm);
+    let average = self_affine.iter().find(|row| row.scan == AVERAGE);
+    let bend = average.map_or(0.0, |row| row.parallel_length_mm);
     let shortest = parameters.hurst_shortest_wavelength_mm.map_or(shortest_reliable, |mm| mm / 1e3);
     let longest = parameters.hurst_longest_wavelength_mm.unwrap_or(bend) / 1e3;
     let per_decade = parameters.spectrum_bins_per_decade;
@@ -264,7 +266,7 @@ pub(super) fn isotropic_rows(spectrum: &[SpectrumRow], hurst: &[HurstRow]) -> Ve
     let Ok(inverse) = abel_inverse(&wavenumbers, &densities) else { return Vec::new() };
     let row = |((&q, &line), density): ((&f64, &f64), f64)| IsotropicRow {
         wavenumber_rad_mm: q / 1e3,
-        abel_density_mm4: density * 1e12,
+        abel_density_mm4: finite(density * 1e12),
         self_affine_density_mm4: exponent
             .and_then(|exponent| finite(self_affine_isotropic(q, line, exponent) * 1e12)),
     };
@@ -286,7 +288,9 @@ pub(super) fn agreement_rows(
         from_spectrum_mm2: compared.from_spectrum * 1e6,
         relative_difference: compared.relative_difference(),
     };
-    let rows: Vec<AgreementRow> = compared.iter().map(row).collect();
+    // Flat scans have a correlation of 0, and nothing differs from it in relation.
+    let defined = |row: &AgreementRow| row.relative_difference.is_finite();
+    let rows: Vec<AgreementRow> = compared.iter().map(row).filter(defined).collect();
     let size = |row: &&AgreementRow| row.relative_difference.abs();
     let Some(worst) = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else {
         return (rows, Metadata::new(), Vec::new());

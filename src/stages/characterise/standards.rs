@@ -1,6 +1,7 @@
 //! Parameters of the standards: profile parameters, mean profile depth, texture levels.
 
-use super::{AVERAGE, Characterise};
+use super::warnings::left_out;
+use super::{AVERAGE, Characterise, demand_ascending};
 use crate::artifact::Row;
 use crate::recipe::{Violation, demand};
 use crate::surface::filter::waviness;
@@ -68,7 +69,11 @@ impl ProfileDepth {
             let positive = value.is_none_or(|x| x > 0.0 && x.is_finite());
             demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
-        Ok(())
+        let low = Some(self.low_pass_mm);
+        let keys = "characterise.profile_depth.(low_pass_mm, high_pass_mm)";
+        demand_ascending(keys, low, self.high_pass_mm)?;
+        let keys = "characterise.profile_depth.(low_pass_mm, segment_mm)";
+        demand_ascending(keys, low, Some(self.segment_mm))
     }
 
     fn options(&self) -> DepthOptions {
@@ -173,18 +178,85 @@ impl Row for TextureRow {
     const VERSION: u32 = 1;
 }
 
-/// Windows that are flat, or have sections without any height, have no row.
-pub(super) fn profile_rows(parameters: &Characterise, windows: &[LineScan]) -> Vec<ProfileRow> {
-    windows.par_iter().filter_map(|window| profile_row(parameters, window)).collect()
+/// Rows of the windows, and warnings: of windows without one, since they are flat or the cut-offs
+/// and sections do not fit them, and of cut-offs and sections longer than a window.
+pub(super) fn profile_rows(
+    parameters: &Characterise,
+    windows: &[LineScan],
+) -> (Vec<ProfileRow>, Vec<String>) {
+    let found: Vec<_> = windows.par_iter().map(|window| profile_row(parameters, window)).collect();
+    let (mut rows, mut without) = (Vec::new(), Vec::new());
+    for (window, row) in windows.iter().zip(found) {
+        match row {
+            Ok(row) => rows.push(row),
+            Err(reason) => without.push((window.name.clone(), reason)),
+        }
+    }
+    let told = left_out("windows", windows.len(), "profile parameters", &without);
+    let keys = [
+        ("lambda_c_mm", parameters.lambda_c_mm),
+        ("section_length_mm", parameters.section_length_mm),
+    ];
+    let longer = |(key, mm): (&str, Option<f64>)| {
+        let mm = mm?;
+        // A window cut to whole points is up to one spacing shorter than what was asked for.
+        let window = windows.iter().find(|w| mm >= length_mm(w) + w.spacing * 1e3)?;
+        Some(format!(
+            "characterise.{key} = {mm} is longer than the window {} of {:.4} mm, which is taken \
+             as one section",
+            window.name,
+            length_mm(window)
+        ))
+    };
+    let longer = keys.into_iter().filter_map(longer);
+    (rows, told.into_iter().chain(longer).collect())
 }
 
-fn profile_row(parameters: &Characterise, window: &LineScan) -> Option<ProfileRow> {
+fn length_mm(window: &LineScan) -> f64 {
+    window.heights.len() as f64 * window.spacing * 1e3
+}
+
+/// Why cut-offs and sections do not fit a window, if they do not.
+fn misfit(parameters: &Characterise, window: &LineScan) -> Option<String> {
+    /// Fewer points show no peak between two valleys.
+    const FEWEST_POINTS: usize = 5;
+    let (spacing_mm, length_mm) = (window.spacing * 1e3, length_mm(window));
+    let points = section_points(parameters, window);
+    match (parameters.lambda_c_mm, parameters.lambda_s_mm) {
+        (Some(mm), _) if mm < 2.0 * spacing_mm => Some(format!(
+            "characterise.lambda_c_mm = {mm} is below two spacings of {spacing_mm:.4} mm: no \
+             roughness is left"
+        )),
+        (_, Some(mm)) if mm > length_mm / 3.0 => Some(format!(
+            "characterise.lambda_s_mm = {mm} is longer than a third of its {length_mm:.4} mm"
+        )),
+        _ if points < FEWEST_POINTS => Some(format!(
+            "a section has {points} of at least {FEWEST_POINTS} points; set a longer \
+             characterise.section_length_mm (lambda_c_mm where that is not set)"
+        )),
+        _ => None,
+    }
+}
+
+/// The parameters of a window, or why it has none.
+fn profile_row(parameters: &Characterise, window: &LineScan) -> Result<ProfileRow, String> {
+    if let Some(reason) = misfit(parameters, window) {
+        return Err(reason);
+    }
     let points = section_points(parameters, window);
     let spacing = window.spacing;
     let roughness = roughness(parameters, window);
-    let found = profile_parameters(&roughness, spacing, points, parameters.profile_standard)?;
+    let found = profile_parameters(&roughness, spacing, points, parameters.profile_standard)
+        .ok_or("it is flat, or one of its sections has no height at all")?;
     let ProfileParameters { ra, rq, rp, rv, rz, rt, rsk, rku, rsm, rdq, sections } = found;
-    Some(ProfileRow {
+    if rp < 0.0 || rv < 0.0 {
+        return Err(format!(
+            "its sections of {:.4} mm lie on one side of the mean line; set \
+             characterise.lambda_c_mm to take long waves off, or a longer section_length_mm",
+            points as f64 * spacing * 1e3
+        ));
+    }
+    Ok(ProfileRow {
         scan: window.name.clone(),
         section_length_mm: points as f64 * spacing * 1e3,
         sections: sections as u64,
@@ -230,7 +302,11 @@ fn roughness(parameters: &Characterise, window: &LineScan) -> Vec<f64> {
     }
 }
 
-pub(super) fn depth_rows(parameters: &Characterise, windows: &[LineScan]) -> Vec<DepthRow> {
+/// Rows of the segments, and warnings where there are none or some have no depth.
+pub(super) fn depth_rows(
+    parameters: &Characterise,
+    windows: &[LineScan],
+) -> (Vec<DepthRow>, Vec<String>) {
     let rows = |window: &LineScan| -> Vec<DepthRow> {
         let options = parameters.profile_depth.options();
         let depths = mean_profile_depths(&window.heights, window.spacing, &options);
@@ -242,7 +318,43 @@ pub(super) fn depth_rows(parameters: &Characterise, windows: &[LineScan]) -> Vec
         };
         depths.into_iter().map(row).collect()
     };
-    windows.par_iter().flat_map_iter(rows).collect()
+    let rows: Vec<DepthRow> = windows.par_iter().flat_map_iter(rows).collect();
+    let limit = 100.0 * parameters.profile_depth.most_drop_outs;
+    let without = |row: &&DepthRow| row.depth_mm.is_none();
+    let told = |row: &DepthRow| {
+        let (name, share) = (&row.scan, 100.0 * row.interpolated_share);
+        let reason = format!(
+            "{share:.1} % of its points are drop-outs and spikes, the limit is {limit:.1} % \
+             (characterise.profile_depth.most_drop_outs); points that cleaning made missing count \
+             as drop-outs"
+        );
+        (format!("{name} from {:.1} mm on", row.start_mm), reason)
+    };
+    let without: Vec<_> = rows.iter().filter(without).map(told).collect();
+    let told = left_out("segments", rows.len(), "mean profile depth", &without);
+    let warnings = too_short(&parameters.profile_depth, windows).into_iter().chain(told).collect();
+    (rows, warnings)
+}
+
+/// A warning of windows shorter than a segment. Scans of a few centimetres are not made for the
+/// mean profile depth: of windows shorter than half a segment nothing is said unless the recipe
+/// has a key of it.
+fn too_short(depth: &ProfileDepth, windows: &[LineScan]) -> Option<String> {
+    let segment = depth.segment_mm / 1e3 * (1.0 + 1e-9);
+    let is_short = |window: &&LineScan| window.heights.len() < (segment / window.spacing) as usize;
+    let is_meant = *depth != ProfileDepth::default()
+        || windows.iter().any(|window| length_mm(window) >= depth.segment_mm / 2.0);
+    let reason = |window: &LineScan| {
+        let reason = format!(
+            "its {:.1} mm are shorter than a segment \
+             (characterise.profile_depth.segment_mm = {})",
+            length_mm(window),
+            depth.segment_mm
+        );
+        (window.name.clone(), reason)
+    };
+    let short: Vec<_> = windows.iter().filter(is_short).filter(|_| is_meant).map(reason).collect();
+    left_out("windows", windows.len(), "mean profile depth", &short)
 }
 
 /// Bands in which a spectrum of a gappy scan came out without power have no level and no row.

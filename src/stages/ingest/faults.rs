@@ -62,23 +62,3 @@ pub(super) fn fault_rows(report: &ConditioningReport) -> Vec<FaultRow> {
     };
     report.faults.iter().map(row).collect()
 }
-
-/// Says so where level jumps that were kept make most of the shortest waves of a scan.
-pub(super) fn jump_warning(reports: &[&ConditioningReport]) -> Option<String> {
-    let decided_by_jumps = |report: &&&ConditioningReport| {
-        report.faults.iter().any(|fault| {
-            fault.fault == "level jumps"
-                && fault.decision == "kept"
-                && fault.high_frequency_ratio.is_some_and(|ratio| ratio < 0.5)
-        })
-    };
-    let concerned: Vec<_> = reports.iter().filter(decided_by_jumps).collect();
-    let first = concerned.first()?;
-    Some(format!(
-        "level jumps make more than half of the shortest waves of {} of {} scans, the first {}; \
-         look at ingest/faults.arrow, consider ingest.conditioning.level_jumps = \"missing\"",
-        concerned.len(),
-        reports.len(),
-        first.scan
-    ))
-}

@@ -1,6 +1,6 @@
 //! The faults of one scan, found, judged and removed in their order.
 
-use super::{Conditioning, EndPlates, Handling};
+use super::{Conditioning, ConditioningError, EndPlates, Handling};
 use crate::numerics::statistics::least_squares_line;
 use crate::surface::RawScan;
 use crate::surface::faults::{
@@ -10,14 +10,26 @@ use crate::surface::faults::{
 };
 use crate::surface::resample::Grid;
 
-/// Merges repeated positions where that is asked for, and judges how the track was sampled.
-pub(super) fn sampling(scan: &RawScan, conditioning: &Conditioning) -> (RawScan, Vec<FaultReport>) {
+/// Merges repeated positions or refuses a scan that has some, and judges how the track was sampled.
+pub(super) fn sampling(
+    scan: &RawScan,
+    conditioning: &Conditioning,
+) -> Result<(RawScan, Vec<FaultReport>), ConditioningError> {
     let points = scan.heights.len().max(1) as f64;
+    let first = scan.positions.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]);
     let (merged, repeated) = merge_repeated(scan);
-    let (scan, decision) = match conditioning.repeated_positions {
-        RepeatedPositions::Mean => (merged, "averaged"),
-        RepeatedPositions::Refuse => (scan.clone(), "refused"),
+    let decision = match (conditioning.repeated_positions, first) {
+        (RepeatedPositions::Mean, _) => "averaged",
+        (RepeatedPositions::Refuse, None) => "refused",
+        (RepeatedPositions::Refuse, Some(position)) => {
+            return Err(ConditioningError::Repeated {
+                scan: scan.name.clone(),
+                count: repeated,
+                position_mm: position * 1e3,
+            });
+        }
     };
+    let scan = merged;
     let jitter = position_jitter(&scan.positions);
     let criterion = "position equal to that of the point before".into();
     let share = repeated as f64 / points;
@@ -25,7 +37,7 @@ pub(super) fn sampling(scan: &RawScan, conditioning: &Conditioning) -> (RawScan,
     let criterion = "coefficient of variation of the steps below 1.5 mean steps".into();
     let jitter = FaultReport::new("jitter", criterion, "reported", 0, 0.0)
         .measuring("coefficient of variation", jitter);
-    (scan, vec![repeated, jitter])
+    Ok((scan, vec![repeated, jitter]))
 }
 
 /// What became of the heights of a scan.

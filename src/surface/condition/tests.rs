@@ -143,3 +143,17 @@ fn scans_of_which_nothing_is_left_are_errors() {
     let error = condition(&scan(1e-3, vec![]), &recipe("")).unwrap_err();
     assert!(matches!(error, ConditioningError::Grid { .. }), "{error}");
 }
+
+#[test]
+fn a_flat_scan_has_heights_of_zero_and_no_round_off() {
+    let positions: Vec<f64> = (0..300).map(|i| f64::from(i) * 1e-5).collect();
+    for tilt in [0.0, 0.3] {
+        let heights = positions.iter().map(|x| 4e-4 + tilt * x).collect();
+        let scan = RawScan { name: "flat".into(), positions: positions.clone(), heights };
+        for extent in [FormExtent::Window, FormExtent::Scan] {
+            let conditioning = Conditioning { form_extent: extent, ..Conditioning::default() };
+            let (windows, _) = condition(&scan, &conditioning).unwrap();
+            assert!(windows[0].heights.iter().all(|z| *z == 0.0), "{tilt} {extent:?}");
+        }
+    }
+}

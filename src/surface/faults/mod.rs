@@ -2,6 +2,7 @@
 //! ones.
 
 mod effect;
+mod far;
 mod jumps;
 mod overview;
 mod plates;
@@ -9,6 +10,7 @@ mod sampling;
 mod spikes;
 
 pub use effect::{FaultReport, Texture};
+pub use far::FarHeights;
 pub use jumps::{find_jumps, remove_jumps};
 pub use overview::{Closeup, FaultOverview, FoundPoints, Marks, Stretch};
 pub use plates::end_plates;
