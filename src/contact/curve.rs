@@ -1,5 +1,6 @@
 //! Friction over contact area, from as few pressures as the accuracy needs.
 
+use super::refine::GridError;
 use crate::numerics::interpolation::CubicHermite;
 
 /// One solved pressure on the way to a curve.
@@ -11,8 +12,8 @@ pub struct CurvePoint {
     pub contact_area_fraction: f64,
     /// Friction coefficient.
     pub friction_coefficient: f64,
-    /// Its estimated error by the grid, absolute; none if not known.
-    pub discretisation_error: Option<f64>,
+    /// Their estimated errors by the grid; none if not known.
+    pub error: Option<GridError>,
 }
 
 /// Friction at one of the wanted contact area fractions.
@@ -26,8 +27,8 @@ pub struct CurveValue {
     pub friction_coefficient: f64,
     /// Estimated error of `friction_coefficient` by interpolation, absolute.
     pub interpolation_error: f64,
-    /// The larger of the errors by the grid of the two points that it lies between; none if one of
-    /// them is not known.
+    /// The larger of the errors by the grid of the two points that it lies between, with what an area
+    /// that is a bit off makes of the friction; none if one of them is not known.
     pub discretisation_error: Option<f64>,
 }
 
@@ -99,7 +100,7 @@ pub fn friction_curve<E>(
     if targets.is_empty() || !ascending || !inside {
         return Err(CurveError::Targets(targets.to_vec()));
     }
-    let mut sampler = Sampler { solve, points: Vec::new() };
+    let mut sampler = Sampler { solve, points: Vec::new(), jumps: Vec::new() };
     sampler.add(first_guess)?;
     sampler.reach(targets[0], Side::Below)?;
     sampler.reach(targets[targets.len() - 1], Side::Above)?;
@@ -114,7 +115,7 @@ pub fn friction_curve<E>(
         if excess(worst) <= 1.0 {
             return Ok(values);
         }
-        sampler.add(worst.mean_pressure)?;
+        sampler.narrow(worst)?;
     }
     Err(CurveError::NotSmooth { solves: sampler.points.len() })
 }
@@ -129,6 +130,8 @@ struct Sampler<S> {
     solve: S,
     /// Ascending in area, and therefore in pressure.
     points: Vec<CurvePoint>,
+    /// Targets that no pressure has.
+    jumps: Vec<f64>,
 }
 
 impl<S, E> Sampler<S>
@@ -209,18 +212,61 @@ where
             let nearest = (at - area[below]).abs().min((area[above] - at).abs());
             let resolved = nearest <= NEAR || area[above] - area[below] <= NARROW;
             let between = (friction.at(at) - lines.at(at)).abs();
+            let (below, above) = (&self.points[below], &self.points[above]);
+            let change = (above.friction_coefficient - below.friction_coefficient).abs();
+            let interpolation_error = match resolved {
+                true => between,
+                false if self.jumps.contains(target) => change.max(between),
+                false => f64::INFINITY,
+            };
+            let width = (above.contact_area_fraction / below.contact_area_fraction).ln();
+            let slope = if width > 0.0 { change / width } else { 0.0 };
+            let error = |point: &CurvePoint| {
+                point.error.map(|error| {
+                    let area = error.contact_area_fraction / point.contact_area_fraction;
+                    error.friction_coefficient + slope * area
+                })
+            };
             CurveValue {
                 contact_area_fraction: *target,
                 mean_pressure: pressure.at(at).exp(),
                 friction_coefficient: friction.at(at),
-                interpolation_error: if resolved { between } else { f64::INFINITY },
-                discretisation_error: self.points[below]
-                    .discretisation_error
-                    .zip(self.points[above].discretisation_error)
+                interpolation_error,
+                discretisation_error: error(below)
+                    .zip(error(above))
                     .map(|(below, above)| below.max(above)),
             }
         };
         targets.iter().map(value).collect()
+    }
+
+    /// Solves once more for a value that is not good enough, at the pressure predicted for its area, or,
+    /// if that leaves the solved points about it as they were, at the middle of their pressures.
+    ///
+    /// Some areas no pressure has: contacts that merge on a grid close the points between them all at
+    /// once, and a finer grid may find less area at more pressure. Such a jump is where the points on both
+    /// sides have nearly the same pressure but not the same area, or no pressure between theirs an area between.
+    fn narrow(&mut self, value: &CurveValue) -> Result<(), CurveError<E>> {
+        let target = value.contact_area_fraction;
+        let before = self.bracket(target);
+        self.add(value.mean_pressure)?;
+        if self.bracket(target) == before {
+            self.add((before[0].mean_pressure * before[1].mean_pressure).sqrt())?;
+        }
+        let [below, above] = self.bracket(target);
+        let near = (above.mean_pressure / below.mean_pressure).ln() <= NEAR;
+        let apart = (above.contact_area_fraction / below.contact_area_fraction).ln() > NARROW;
+        if [below, above] == before || (near && apart) {
+            self.jumps.push(target);
+        }
+        Ok(())
+    }
+
+    /// The solved points about an area.
+    fn bracket(&self, target: f64) -> [CurvePoint; 2] {
+        let above = self.points.partition_point(|p| p.contact_area_fraction < target);
+        let above = above.min(self.points.len() - 1);
+        [self.points[above.saturating_sub(1)], self.points[above]]
     }
 }
 
@@ -247,7 +293,10 @@ mod tests {
             mean_pressure: pressure,
             contact_area_fraction,
             friction_coefficient,
-            discretisation_error: Some(1e-3 * contact_area_fraction),
+            error: Some(GridError {
+                friction_coefficient: 1e-3 * contact_area_fraction,
+                contact_area_fraction: 0.0,
+            }),
         })
     }
 
@@ -274,6 +323,62 @@ mod tests {
             }
             assert!(solves <= most && solves <= previous, "{solves} solves for {tolerance}");
             previous = solves;
+        }
+    }
+
+    #[test]
+    fn an_area_that_no_pressure_has_gets_the_friction_on_both_sides_of_the_jump() {
+        let jumping = |p: f64| -> Result<CurvePoint, Infallible> {
+            let smooth = point(p)?;
+            let area = smooth.contact_area_fraction;
+            let jump = if area > 0.049 { 1.2 } else { 1.0 };
+            Ok(CurvePoint { contact_area_fraction: area * jump, ..smooth })
+        };
+        for targets in [&[0.05][..], &[0.05, 0.1], &[0.02, 0.05, 0.055]] {
+            let mut solves = 0;
+            let curve = friction_curve(targets, 1e-2, 3e5, |p| {
+                solves += 1;
+                jumping(p)
+            })
+            .unwrap();
+            assert!(solves <= 20, "{solves} solves for {targets:?}");
+            let value = curve.iter().find(|v| v.contact_area_fraction == 0.05).unwrap();
+            let (exact, error) = (friction(0.049), value.interpolation_error);
+            assert!(error <= 1e-2 * exact);
+            assert!((value.friction_coefficient - exact).abs() <= error.max(1e-2 * exact));
+        }
+    }
+
+    #[test]
+    fn an_area_that_stands_still_and_then_jumps_is_no_trap() {
+        let steps = |p: f64| -> Result<CurvePoint, Infallible> {
+            let smooth = point(p)?;
+            let area = smooth.contact_area_fraction;
+            let stepped = if (0.04..0.06).contains(&area) { 0.0400001 } else { area };
+            Ok(CurvePoint { contact_area_fraction: stepped, ..smooth })
+        };
+        let curve = friction_curve(&[0.03, 0.05], 5e-3, 3e5, steps).unwrap();
+        approx::assert_relative_eq!(
+            curve[1].friction_coefficient,
+            friction(0.06),
+            max_relative = 0.01
+        );
+    }
+
+    #[test]
+    fn an_area_that_is_a_bit_off_is_an_error_of_friction() {
+        let off = |p: f64| -> Result<CurvePoint, Infallible> {
+            let exact = point(p)?;
+            let contact_area_fraction = 0.05 * exact.contact_area_fraction;
+            let error = GridError { friction_coefficient: 0.0, contact_area_fraction };
+            Ok(CurvePoint { error: Some(error), ..exact })
+        };
+        for value in friction_curve(&TARGETS, 1e-3, 3e3, off).unwrap() {
+            let area = value.contact_area_fraction;
+            let change = (friction(1.01 * area) - friction(area)).abs() / 0.01_f64.ln_1p();
+            let error = value.discretisation_error.unwrap();
+            // The slope is that between the solved points.
+            assert!((error - 0.05 * change).abs() <= 0.01 * friction(area), "{value:?} {change}");
         }
     }
 

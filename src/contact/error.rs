@@ -28,7 +28,7 @@ pub enum ContactError {
     #[error(
         "the contact did not converge: p = {pressure:e} Pa, v = {speed:e} m/s, {points} points: \
          residual {residual:.1e} after {iterations} iterations with {changes} points still \
-         changing sides; try another number of points"
+         changing sides; try another number of points, or a lower pressure"
     )]
     NotConverged {
         /// Mean pressure in Pa.

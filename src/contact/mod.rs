@@ -12,6 +12,7 @@
 //! | [`half_space`] | the operator from pressure to displacement, by FFT |
 //! | `islands`, `preconditioner` | runs of contact points; the operator's approximate inverse on them |
 //! | `active_set` | the contact set and the pressures on one grid |
+//! | `direct` | small contacts by dense factors |
 //! | [`sliding`] | nested grids from coarse to fine: the solver that users call |
 //! | [`solution`] | friction, area, separation, dissipation and residual of a solved contact |
 //! | [`area`] | the pressure that gives a wanted contact area |
@@ -26,6 +27,7 @@ pub mod sliding;
 pub mod solution;
 
 mod active_set;
+mod direct;
 mod edges;
 mod error;
 mod islands;

@@ -1,6 +1,6 @@
 //! The sliding contact on nested grids.
 
-use super::active_set::{Contact, Goal};
+use super::active_set::{Contact, Goal, Outcome};
 use super::edges::EdgeReader;
 use super::error::ContactError;
 use super::half_space::HalfSpace;
@@ -105,9 +105,32 @@ impl SlidingContact {
             });
         }
         if let Some(solution) = self.full_contact(mean_pressure) {
+            return self.accept(solution, None);
+        }
+        let (solution, outcome) = self.partial_contact(mean_pressure);
+        self.accept(solution, Some(outcome))
+    }
+
+    /// Lets a solution pass only if its residual, evaluated afresh, is small enough: the iteration
+    /// may have rested where it could not improve, and full contact under a pressure beyond the
+    /// reach of double precision is no solution either.
+    fn accept(
+        &self,
+        solution: ContactSolution,
+        outcome: Option<Outcome>,
+    ) -> Result<ContactSolution, ContactError> {
+        let rests = outcome.is_none_or(|outcome| outcome.converged);
+        if rests && solution.residual <= RESIDUAL_TOLERANCE {
             return Ok(solution);
         }
-        self.partial_contact(mean_pressure)
+        Err(ContactError::NotConverged {
+            pressure: solution.mean_pressure,
+            speed: self.speed,
+            points: self.points(),
+            residual: solution.residual,
+            iterations: solution.iterations,
+            changes: outcome.map_or(0, |outcome| outcome.changes),
+        })
     }
 
     /// Peak-to-valley height of the profile in m.
@@ -152,7 +175,7 @@ impl SlidingContact {
         pressure
     }
 
-    fn partial_contact(&mut self, mean_pressure: f64) -> Result<ContactSolution, ContactError> {
+    fn partial_contact(&mut self, mean_pressure: f64) -> (ContactSolution, Outcome) {
         let points = self.points();
         let coarsest = &self.grids[0];
         let mut pressure = vec![mean_pressure; coarsest.heights.len()];
@@ -172,7 +195,7 @@ impl SlidingContact {
                 mean_separation: 0.0,
             };
             let outcome = contact.solve(goal);
-            applications += (outcome.krylov_iterations * grid.heights.len()) as f64 / points as f64;
+            applications += (outcome.applications * grid.heights.len()) as f64 / points as f64;
             if !finest {
                 pressure = contact.pressure;
                 coarser_edges.clone_from(&grid.edges);
@@ -187,17 +210,7 @@ impl SlidingContact {
             let mut solution = fields.evaluate(&mut grid.space);
             solution.iterations = outcome.iterations;
             solution.operator_applications = applications;
-            if outcome.converged && solution.residual <= RESIDUAL_TOLERANCE {
-                return Ok(solution);
-            }
-            return Err(ContactError::NotConverged {
-                pressure: mean_pressure,
-                speed: self.speed,
-                points,
-                residual: solution.residual,
-                iterations: outcome.iterations,
-                changes: outcome.changes,
-            });
+            return (solution, outcome);
         }
         unreachable!("there is always a finest grid")
     }
@@ -298,4 +311,42 @@ pub(crate) fn resample(values: &[f64], points: usize) -> Vec<f64> {
             (1.0 - weight) * values[left] + weight * values[(left + 1) % n]
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine() -> SlidingContact {
+        let heights: Vec<f64> = (0..64).map(|i| 1e-5 * (0.1 * f64::from(i)).sin()).collect();
+        SlidingContact::new(&Rubber::elastic(3e6, 0.5), 0.01, 1e-3, &heights).unwrap()
+    }
+
+    #[test]
+    fn an_iteration_that_rests_above_the_tolerance_is_refused() {
+        let mut contact = sine();
+        let mut solution = contact.solve(1e4).unwrap();
+        let rests = Outcome { converged: true, iterations: 9, applications: 9, changes: 0 };
+        assert!(contact.accept(solution.clone(), Some(rests)).is_ok());
+        let wanders = Outcome { converged: false, changes: 2, ..rests };
+        let error = contact.accept(solution.clone(), Some(wanders)).unwrap_err();
+        assert!(matches!(error, ContactError::NotConverged { changes: 2, .. }), "{error}");
+        for residual in [1.01 * RESIDUAL_TOLERANCE, f64::NAN] {
+            solution.residual = residual;
+            for outcome in [Some(rests), None] {
+                let error = contact.accept(solution.clone(), outcome).unwrap_err();
+                assert!(matches!(error, ContactError::NotConverged { changes: 0, .. }), "{error}");
+            }
+        }
+    }
+
+    #[test]
+    fn full_contact_beyond_the_reach_of_double_precision_is_refused() {
+        let mut contact = sine();
+        assert!(contact.solve(1e9).is_ok());
+        for pressure in [1e17, 1e100, 1e300] {
+            let error = contact.solve(pressure).unwrap_err();
+            assert!(matches!(error, ContactError::NotConverged { .. }), "{error}");
+        }
+    }
 }

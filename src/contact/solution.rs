@@ -19,8 +19,8 @@ pub struct ContactSolution {
     /// Mean separation in m: of the mean planes of rubber and profile.
     pub mean_separation: f64,
     /// Largest violation, relative: of `u = 0` in contact and `u >= 0` outside by the root mean
-    /// square displacement (or 1e-4 of that of the heights, if that is more: the round-off of the
-    /// heights counts there), of the load and `t >= 0` by the mean pressure.
+    /// square displacement (within 1e-4 and 1 of that of the heights, whose round-off counts where
+    /// the displacement is small), of the load and `t >= 0` by the mean pressure.
     pub residual: f64,
     /// Active-set iterations on the finest grid.
     pub iterations: usize,
@@ -33,12 +33,13 @@ pub struct ContactSolution {
 }
 
 /// Root mean square displacement, the scale of violated gaps; not below 1e-4 of that of the
-/// heights, since their round-off keeps a gap from being any smaller than 1e-15 of them.
+/// heights, since their round-off keeps a gap from being any smaller than 1e-15 of them, and not
+/// above it: the round-off of a pressure that dwarfs all displacements must not hide itself.
 pub(crate) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
     let root_mean_square = |x: &[f64]| euclidean_norm(x) / (x.len() as f64).sqrt();
     let height = root_mean_square(heights);
     // On a flat profile displacements are round-off.
-    if height > 0.0 { root_mean_square(displacement).max(1e-4 * height) } else { 1.0 }
+    if height > 0.0 { root_mean_square(displacement).clamp(1e-4 * height, height) } else { 1.0 }
 }
 
 /// Fields of a contact before they are judged.

@@ -24,6 +24,7 @@ pub struct Microscale {
     finite: CubicHermite,
     area_change: CubicHermite,
     interpolation_error: f64,
+    discretisation_error: Option<CubicHermite>,
 }
 
 /// Corrections of friction and area.
@@ -35,6 +36,9 @@ pub struct Correction {
     pub points: f64,
     /// Change of the contact area fraction.
     pub area: f64,
+    /// Estimated error by the mesh, weighted with the local pressures; none if that of the microscale is
+    /// not known.
+    pub discretisation_error: Option<f64>,
 }
 
 impl Microscale {
@@ -58,7 +62,23 @@ impl Microscale {
             finite: CubicHermite::smooth(logarithms(), finite),
             area_change: CubicHermite::smooth(logarithms(), area_change),
             interpolation_error: errors.into_iter().fold(0.0, f64::max),
+            discretisation_error: None,
         }
+    }
+
+    /// With the errors by the mesh at the sampled `pressures` in Pa, if they are known.
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    #[must_use]
+    pub fn with_discretisation_errors(
+        mut self,
+        pressures: &[f64],
+        errors: Option<Vec<f64>>,
+    ) -> Self {
+        let logarithms = pressures.iter().map(|p| p.ln()).collect();
+        self.discretisation_error = errors.map(|errors| CubicHermite::linear(logarithms, errors));
+        self
     }
 
     /// The smallest sampled pressure in Pa. A contact point has at least this pressure: below it
@@ -94,6 +114,7 @@ impl Microscale {
     pub fn correction(&self, local: &[f64]) -> Result<Correction, LawError> {
         let (smallest, largest) = self.pressures;
         let (mut force, mut load, mut points, mut count, mut area) = (0.0, 0.0, 0.0, 0, 0.0);
+        let mut mesh = 0.0;
         for &pressure in local.iter().filter(|p| **p > 0.0) {
             if pressure > largest {
                 return Err(LawError::BeyondSamples { pressure, largest });
@@ -102,6 +123,8 @@ impl Microscale {
             let change = self.finite.at(log) - self.half_space.at(log);
             force += pressure * change;
             load += pressure;
+            mesh +=
+                self.discretisation_error.as_ref().map_or(0.0, |error| pressure * error.at(log));
             if pressure >= smallest {
                 points += change;
                 count += 1;
@@ -113,6 +136,7 @@ impl Microscale {
             force: mean(force, load),
             points: mean(points, f64::from(count)),
             area: area / local.len() as f64,
+            discretisation_error: self.discretisation_error.is_some().then(|| mean(mesh, load)),
         })
     }
 }
@@ -142,6 +166,22 @@ mod tests {
         let finite = pressures.iter().map(|p: &f64| 0.5 + 0.1 * p.ln()).collect();
         let area = pressures.iter().map(|p: &f64| 0.01 * p.ln()).collect();
         Microscale::new(&pressures, vec![0.4; 4], finite, area, vec![0.0, 2e-4, 1e-4, 0.0])
+    }
+
+    #[test]
+    fn errors_by_the_mesh_are_weighted_with_the_pressures() {
+        let pressures = [1.0, 2.0, 4.0, 8.0];
+        let errors = pressures.iter().map(|p: &f64| 1e-3 * p.ln()).collect();
+        let known = microscale().with_discretisation_errors(&pressures, Some(errors));
+        let correction = known.correction(&[0.0, 2.0, 6.0]).unwrap();
+        let expected = 1e-3 * (2.0 * 2.0_f64.ln() + 6.0 * 6.0_f64.ln()) / 8.0;
+        assert_relative_eq!(
+            correction.discretisation_error.unwrap(),
+            expected,
+            max_relative = 1e-12
+        );
+        let unknown = microscale().with_discretisation_errors(&pressures, None);
+        assert_eq!(unknown.correction(&[2.0]).unwrap().discretisation_error, None);
     }
 
     #[test]
@@ -176,6 +216,9 @@ mod tests {
     #[test]
     fn no_pressure_no_correction() {
         let correction = microscale().correction(&[0.0; 3]).unwrap();
-        assert_eq!(correction, Correction { force: 0.0, points: 0.0, area: 0.0 });
+        assert_eq!(
+            correction,
+            Correction { force: 0.0, points: 0.0, area: 0.0, discretisation_error: None }
+        );
     }
 }

@@ -4,3 +4,6 @@ pub mod bracket;
 pub mod interpolation;
 pub mod krylov;
 pub mod statistics;
+
+/// Complex numbers of public functions, so that a user needs no version of their own.
+pub use rustfft::num_complex::Complex64;

@@ -30,6 +30,22 @@ impl MeanEstimate {
         let confidence_95 = student_t_975(n - 1.0) * standard_deviation / n.sqrt();
         Self { mean, standard_deviation, confidence_95, count }
     }
+
+    /// How many values of this spread have a mean whose 95 % confidence interval is at most as wide as
+    /// `half_width` to each side: the smallest `n` with `t(n - 1) s <= half_width sqrt(n)`. None for a
+    /// half width that is not positive, or a spread that is not known.
+    pub fn count_for(&self, half_width: f64) -> Option<usize> {
+        let ratio = self.standard_deviation / half_width;
+        if !(half_width > 0.0 && ratio.is_finite()) {
+            return None;
+        }
+        // From the normal distribution, whose quantile is below that of Student's.
+        let mut count = ((1.959_963_984 * ratio).powi(2).ceil() as usize).max(2);
+        while student_t_975(count as f64 - 1.0) * ratio > (count as f64).sqrt() {
+            count += 1;
+        }
+        Some(count)
+    }
 }
 
 /// Least-squares line of `y` over `x`: intercept and slope. The slope of fewer than two different
@@ -103,6 +119,21 @@ mod tests {
         // t(0.975, 4) = 2.776445 in every table.
         let expected = 2.776_445_105 * 2.5_f64.sqrt() / 5.0_f64.sqrt();
         approx::assert_relative_eq!(estimate.confidence_95, expected, max_relative = 1e-8);
+    }
+
+    #[test]
+    fn the_count_for_a_half_width_is_the_smallest_that_has_it() {
+        let values = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let estimate = MeanEstimate::of(&values);
+        // Of five values the interval is what it is; a bit less takes six.
+        assert_eq!(estimate.count_for(estimate.confidence_95 * 1.0001), Some(5));
+        assert_eq!(estimate.count_for(estimate.confidence_95 * 0.9999), Some(6));
+        // Of many, (1.96 s / w)^2 = 9604 * 2.5.
+        let many = estimate.count_for(0.02).unwrap();
+        assert!((24_010..24_020).contains(&many), "{many}");
+        assert_eq!(estimate.count_for(0.0), None);
+        assert_eq!(MeanEstimate::of(&[1.0]).count_for(0.1), None);
+        assert_eq!(MeanEstimate::of(&[1.0, 1.0]).count_for(1e-9), Some(2));
     }
 
     #[test]

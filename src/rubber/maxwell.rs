@@ -134,6 +134,15 @@ impl Rubber {
         self.complex_modulus(angular_frequency) / (1.0 - self.poisson_ratio.powi(2))
     }
 
+    /// The rubber with all relaxation times multiplied by a factor, as at another temperature.
+    pub fn shifted(&self, factor: f64) -> Self {
+        let shifted = |branch: &MaxwellBranch| MaxwellBranch {
+            relaxation_time: branch.relaxation_time * factor,
+            ..*branch
+        };
+        Self { branches: self.branches.iter().map(shifted).collect(), ..self.clone() }
+    }
+
     /// Glassy modulus `E_inf + Σ E_k` in Pa, the limit of infinite frequency.
     pub fn glassy_modulus(&self) -> f64 {
         self.equilibrium_modulus + self.branches.iter().map(|b| b.modulus).sum::<f64>()

@@ -94,7 +94,7 @@ fn ratios(rubber: &Rubber, watched: Watched) -> Vec<f64> {
             let truth = case.solve(rubber, refined.solution.pressure.len() * OVER_RESOLVED);
             let error = refined.error?;
             let (error, found, truth) = match watched {
-                Watched::Friction => (
+                Watched::Friction | Watched::FrictionOverArea => (
                     error.friction_coefficient,
                     refined.solution.friction_coefficient,
                     truth.friction_coefficient,

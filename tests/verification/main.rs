@@ -3,6 +3,7 @@
 mod dissipation;
 mod finite_deformation;
 mod full_contact;
+mod lemke;
 mod limits;
 mod oracle;
 mod properties;
