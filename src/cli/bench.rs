@@ -1,0 +1,162 @@
+//! `asperity bench`: error against seconds, and the cost of growth.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::CliError;
+use super::output::{json, note, print, write_file};
+use crate::bench::figure::figure;
+use crate::bench::growth::{self, GrowthError, Job};
+use crate::bench::measure::Effort;
+use crate::bench::{BenchError, report, select};
+
+/// Hidden option by which the executable is started again for one job of the growth.
+const GROWTH_JOB: &str = "--growth-job";
+
+const EXAMPLES: &str = "\
+Examples:
+  Every solver over its accuracy knob, on an idle machine; the tables and the plot of docs/:
+    asperity bench --to docs/work_precision.md
+  Two cases, as JSON:
+    asperity bench --case half-space-1-wave --case hybrid --format json
+  How time and memory grow with points, waves, realisations and threads:
+    asperity bench --growth --to docs/growth.md";
+
+/// Measure what precision costs: error against seconds of every solver on fixed cases.
+///
+/// Errors are relative to an answer on a finer grid than any in the list, or to an exact one.
+/// Seconds are medians of repeats after a warm-up. All cases take two to three minutes on two cores.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Bench {
+    /// A case to run, several if given several times; all if not given.
+    #[arg(long, value_name = "NAME", conflicts_with = "growth")]
+    case: Vec<String>,
+    /// Measure time and memory over points, waves, realisations and threads instead.
+    #[arg(long)]
+    growth: bool,
+    /// Form of the results.
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = Format::Markdown)]
+    format: Format,
+    /// Write to this file instead of standard output. In a document with the lines `<!-- bench:
+    /// begin -->` and `<!-- bench: end -->` what stands between them is replaced. Beside Markdown
+    /// of the cases the plot is written, with the extension svg.
+    #[arg(long, value_name = "PATH")]
+    to: Option<PathBuf>,
+    /// Overwrite a file without these lines.
+    #[arg(long)]
+    force: bool,
+    /// Two values of each knob, once: to see that everything runs, not for results.
+    #[arg(long)]
+    quick: bool,
+    /// Run one job of the growth and print what it took.
+    #[arg(long, hide = true, value_name = "JOB")]
+    growth_job: Option<Job>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Tables.
+    Markdown,
+    /// All figures with full precision.
+    Json,
+    /// The plot.
+    Svg,
+}
+
+impl Bench {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`].
+    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        if let Some(job) = self.growth_job {
+            return print(&json(&job.run().map_err(CliError::Failure)?)?);
+        }
+        if self.growth && self.format == Format::Svg {
+            return Err(CliError::input("--growth has no plot: choose markdown or json"));
+        }
+        self.refuse_early()?;
+        if self.growth { self.growth(quiet) } else { self.precision(quiet) }
+    }
+
+    fn effort(&self) -> Effort {
+        if self.quick { Effort::Quick } else { Effort::Full }
+    }
+
+    /// Whether the results have a place is known before they are computed.
+    fn refuse_early(&self) -> Result<(), CliError> {
+        match &self.to {
+            Some(path) if path.exists() && !self.force && renewed(path, "").is_none() => {
+                Err(super::output::already_exists(path))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn precision(&self, quiet: bool) -> Result<(), CliError> {
+        let mut results = Vec::new();
+        for case in select(&self.case)? {
+            let say = |method: &str| note(quiet, format_args!("{}: {method}", case.name));
+            results.push(case.run(self.effort(), &say)?);
+        }
+        let plot = || figure(&results).map_err(CliError::failure);
+        match self.format {
+            Format::Svg => self.write(&plot()?),
+            Format::Json => self.write(&json(&results)?),
+            Format::Markdown => {
+                self.write(&report::markdown(&results))?;
+                match &self.to {
+                    Some(path) => write_text(&path.with_extension("svg"), &plot()?),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+
+    fn growth(&self, quiet: bool) -> Result<(), CliError> {
+        let executable = std::env::current_exe().map_err(CliError::failure)?;
+        let say = |job: &str| note(quiet, job);
+        let series = growth::run(&executable, &["bench", GROWTH_JOB], self.effort(), &say)?;
+        self.write(&match self.format {
+            Format::Json => json(&series)?,
+            Format::Markdown | Format::Svg => growth::markdown(&series),
+        })
+    }
+
+    fn write(&self, text: &str) -> Result<(), CliError> {
+        match &self.to {
+            None => print(text),
+            Some(path) if self.format == Format::Markdown => {
+                write_text(path, &renewed(path, text).unwrap_or_else(|| text.to_owned()))
+            }
+            Some(path) => write_text(path, text),
+        }
+    }
+}
+
+/// The document at a path with these results, if it has a place for them.
+fn renewed(path: &Path, results: &str) -> Option<String> {
+    report::renewed(&fs::read_to_string(path).ok()?, results)
+}
+
+fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
+    write_file(path, true, |out| out.write_all(text.as_bytes()))
+}
+
+impl From<BenchError> for CliError {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::UnknownCase { .. } => Self::input(error),
+            BenchError::Solver { .. } => Self::failure(error),
+        }
+    }
+}
+
+impl From<GrowthError> for CliError {
+    fn from(error: GrowthError) -> Self {
+        Self::failure(error)
+    }
+}
