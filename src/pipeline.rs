@@ -211,7 +211,12 @@ fn compute(
     let chain = match plan.work {
         Work::Chain(chain) => chain,
         Work::Sinusoid(study) => {
-            return sinusoid::run(study, &plan.rubber, &solve_store(folder, forced)?, context);
+            return sinusoid::run(
+                study,
+                &plan.material.rubber,
+                &solve_store(folder, forced)?,
+                context,
+            );
         }
     };
     match stage {
@@ -223,29 +228,32 @@ fn compute(
         Stage::Approximate => approximate::run(chain.approximate, folder, context),
         Stage::Realise => realise::run(chain.realise, folder, context),
         Stage::Bem => {
-            bem::run(chain.bem, &plan.rubber, folder, &solve_store(folder, forced)?, context)
+            let store = solve_store(folder, forced)?;
+            bem::run(chain.bem, &plan.material, folder, &store, context)
         }
         Stage::Micro => match chain.micro {
             Some(micro) => {
                 let store = solve_store(folder, forced)?;
-                micro::run(micro, &plan.rubber, folder, &store, context)
+                micro::run(micro, &plan.material.rubber, folder, &store, context)
             }
             None => Ok(Vec::new()),
         },
         Stage::Hybrid => match chain.micro {
-            Some(micro) => hybrid::run(&chain.hybrid, micro, &plan.rubber, folder, context),
+            Some(micro) => {
+                hybrid::run(&chain.hybrid, micro, &plan.material.rubber, folder, context)
+            }
             None => Ok(Vec::new()),
         },
         Stage::Fem => match chain.fem {
             Some(fem) => {
                 let store = solve_store(folder, forced)?;
-                fem::run(fem, chain.bem, &plan.rubber, folder, &store, context)
+                fem::run(fem, chain.bem, &plan.material.rubber, folder, &store, context)
             }
             None => Ok(Vec::new()),
         },
         Stage::Tables => {
             let with = tables::Models { hybrid: chain.micro.is_some(), fem: chain.fem.is_some() };
-            tables::run(chain.tables, with, &plan.rubber, folder, context)
+            tables::run(chain.tables, with, &plan.material.rubber, folder, context)
         }
         Stage::Sinusoid => unreachable!("no stage of the chain"),
     }

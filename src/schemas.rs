@@ -39,6 +39,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<realise::SurfaceRow>()?,
         table::<bem::SolveRow>()?,
         table::<bem::CurveRow>()?,
+        table::<bem::RealisationsRow>()?,
         arrays(&bem::fields_schema()),
         table::<micro::SampleRow>()?,
         table::<micro::LawRow>()?,

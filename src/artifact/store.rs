@@ -135,7 +135,11 @@ impl RunView {
         })
     }
 
-    fn verify_output(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
+    /// Compares size and digest of one output with what is expected.
+    ///
+    /// # Errors
+    /// As [`Self::verify`].
+    pub fn verify_output(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
         let path = self.file(stage, &output.file);
         let size = fs::metadata(&path).map_err(ArtifactError::io("read", &path))?.len();
         check_size(&path, output.size, size)?;

@@ -20,7 +20,8 @@ Examples:
 
 /// Say which model each scale will get, on which grids, and what that costs.
 ///
-/// Runs the cheap stages and the half-space of one realisation in a temporary folder; nothing is
+/// Runs the cheap stages and the half-space of one realisation, of eight where an accuracy is asked
+/// for, in a temporary folder; nothing is
 /// written to the run folder.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -47,7 +48,7 @@ impl PlanCommand {
         }
         let threads = self.threads.unwrap_or_else(rayon::current_num_threads);
         let interrupt = Interrupt::install()?;
-        let spinner = Spinner::new(quiet, "trying one realisation");
+        let spinner = Spinner::new(quiet, "trying the half-space");
         let forecast = forecast(&recipe, threads, interrupt.flag())?;
         spinner.finish();
         print(&if self.json { json(&forecast)? } else { text(&forecast) })
@@ -73,8 +74,8 @@ fn text(forecast: &Forecast) -> String {
         let grids = if coarse == fine { fine.to_string() } else { format!("{coarse} to {fine}") };
         let _ = writeln!(
             text,
-            "{} waves, {} mm/s: {low} to {high} MPa, {} pressures a realisation on {grids} points",
-            curve.waves, curve.speed_mm_s, curve.solves
+            "{} waves, {} mm/s: {} realisations, {low} to {high} MPa, {} pressures each on {grids} points",
+            curve.waves, curve.speed_mm_s, curve.realisations, curve.solves
         );
         let _ = writeln!(
             text,

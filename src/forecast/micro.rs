@@ -1,12 +1,9 @@
 //! What the microscales will ask of the finite elements.
 
-use super::ForecastError;
+use super::{CurveForecast, ForecastError, Trial};
 use crate::contact::SlidingContact;
 use crate::multiscale::scales::Scales;
-use crate::rubber::Rubber;
-use crate::stages::bem::CurveRow;
 use crate::stages::micro::Micro;
-use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError};
 use serde::Serialize;
 
@@ -37,13 +34,12 @@ pub struct MicroForecast {
 /// area. Several micro waves have phases, and so a microscale of their own in each realisation.
 pub(super) fn microscales(
     parameters: &Micro,
-    rubber: &Rubber,
-    surfaces: &[Surface],
-    curves: &[CurveRow],
-    realisations: f64,
+    trial: &Trial,
+    forecasts: &[CurveForecast],
 ) -> Result<Vec<MicroForecast>, ForecastError> {
+    let rubber = &trial.rubber;
     let mut found: Vec<(MicroForecast, Scales)> = Vec::new();
-    for surface in surfaces {
+    for surface in trial.first_surfaces() {
         let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
         let (Some(longest), false) = (scales.micro.last(), scales.macroscale.is_empty()) else {
             continue;
@@ -51,12 +47,16 @@ pub(super) fn microscales(
         let shared = |other: &(MicroForecast, Scales)| {
             crate::stages::micro::same_waves(&other.1.micro, &scales.micro)
         };
-        let own: Vec<&CurveRow> = curves.iter().filter(|row| row.waves == surface.waves).collect();
-        for rows in own.chunk_by(|a, b| a.speed_mm_s == b.speed_mm_s) {
-            let (row, speed_mm_s) = (rows[rows.len() - 1], rows[0].speed_mm_s);
+        for rows in trial.first_curves().filter(|rows| rows[0].waves == surface.waves) {
+            let (row, speed_mm_s) = (&rows[rows.len() - 1], rows[0].speed_mm_s);
             if found.iter().any(|other| other.0.speed_mm_s == speed_mm_s && shared(other)) {
                 continue;
             }
+            let same = |curve: &&CurveForecast| {
+                (curve.waves, curve.speed_mm_s) == (surface.waves, speed_mm_s)
+            };
+            let realisations =
+                forecasts.iter().find(same).map_or(1.0, |curve| f64::from(curve.realisations));
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let solve = || -> Result<f64, SolveError> {
                 let mut contact = SlidingContact::new(rubber, speed_mm_s / 1e3, period, &heights)?;

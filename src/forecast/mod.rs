@@ -2,7 +2,8 @@
 //!
 //! The stages before the contact are cheap and are run for it, and so is the half-space of one
 //! realisation, in a folder that is removed again: areas, pressures, grids and seconds of the others
-//! follow from this one. Finite elements are too dear to try; their cost is that of the main job,
+//! follow from this one. Where an accuracy of the average is asked for it is eight, whose spread tells how
+//! many more are needed. Finite elements are too dear to try; their cost is that of the main job,
 //! scaled ([`micro`]).
 
 pub mod micro;
@@ -13,9 +14,11 @@ pub use scales::{ScaleForecast, ScaleModel};
 
 use crate::artifact::{ArtifactError, RunView};
 use crate::pipeline::{self, PipelineError, Selection};
-use crate::recipe::{Recipe, Violation, Work};
+use crate::recipe::{Chain, Recipe, Violation, Work};
 use crate::rubber::Rubber;
-use crate::stages::bem::{CURVES_FILE, CurveRow, SOLVES_FILE, SolveRow};
+use crate::stages::bem::{
+    CURVES_FILE, CurveRow, FIRST_REALISATIONS, SOLVES_FILE, SolveRow, realisations_needed,
+};
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Stage, StageError};
 use serde::Serialize;
@@ -58,6 +61,8 @@ pub struct CurveForecast {
     pub waves: u32,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
+    /// Realisations: those of the recipe, or what an accuracy of the average is expected to take.
+    pub realisations: u32,
     /// Mean pressures at the smallest and the largest wanted area in MPa.
     pub pressures_mpa: [f64; 2],
     /// Grid points of the coarsest and the finest solve that a value rests on.
@@ -90,7 +95,8 @@ pub struct Forecast {
     pub megabytes: f64,
 }
 
-/// Runs a trial of the recipe with one realisation on the half-space, and tells from it.
+/// Runs a trial of the recipe on the half-space, with one realisation or those that tell how many are
+/// needed, and tells from it.
 ///
 /// # Errors
 /// [`ForecastError`]; those of the trial are those that the run would have.
@@ -104,36 +110,19 @@ pub fn forecast(
         Work::Sinusoid(_) => return Err(ForecastError::Sinusoid),
     };
     let folder = tempfile::tempdir().map_err(ForecastError::Folder)?;
-    let trial = one_realisation(recipe);
-    let (mut stages, mut bem_seconds) = (Vec::new(), 0.0);
-    for (stage, _) in pipeline::status(&trial, folder.path())? {
-        if stage == Stage::Tables {
-            continue;
-        }
-        let seconds = computed(&trial, folder.path(), stage, interrupted)?;
-        if stage == Stage::Bem {
-            bem_seconds = seconds;
-        } else {
-            stages.push(StageForecast { stage, seconds: Some(seconds) });
-        }
-    }
-    let view = RunView::of(folder.path());
-    let surfaces = read_surfaces(&view)?;
-    let rubber = crate::stages::bem::rubber(chain.bem)?;
-    let (curve_rows, _) = view.read_table::<CurveRow>("bem", CURVES_FILE)?;
-    let (solve_rows, _) = view.read_table::<SolveRow>("bem", SOLVES_FILE)?;
-    let threshold = chain.micro.map(|micro| micro.rms_slope_threshold);
-    let curves = curves(&rubber, &surfaces, &curve_rows, &solve_rows, threshold);
+    let (mut stages, bem_seconds) = run_trial(recipe, folder.path(), interrupted)?;
+    let trial = Trial::read(&RunView::of(folder.path()), &chain)?;
+    let curves = trial.curves(&chain);
 
-    // The trial has a task for each curve; more realisations first fill threads that it left idle.
-    let (tasks, realisations) = (curves.len() as f64, f64::from(chain.realise.realisations));
-    let idle = (tasks / threads as f64).min(1.0);
-    let half_space = bem_seconds * (realisations * idle).max(1.0);
+    // Curves that the trial could not run side by side first fill the threads that it left idle.
+    let tried = trial.count() as f64;
+    let total: f64 = curves.iter().map(|curve| f64::from(curve.realisations)).sum();
+    let busy = (tried / threads as f64).min(1.0);
+    let half_space = bem_seconds * (total / tried * busy).max(1.0);
     stages.push(StageForecast { stage: Stage::Bem, seconds: Some(half_space) });
     let mut microscales = Vec::new();
     if let Some(parameters) = chain.micro {
-        microscales =
-            micro::microscales(parameters, &rubber, &surfaces, &curve_rows, realisations)?;
+        microscales = micro::microscales(parameters, &trial, &curves)?;
         let seconds = micro::seconds(&microscales, threads);
         stages.push(StageForecast { stage: Stage::Micro, seconds: Some(seconds) });
         // The macro surfaces under the local law: one contact, on a coarser grid, for each value of the
@@ -151,18 +140,122 @@ pub fn forecast(
     Ok(Forecast { curves, micro: microscales, stages, megabytes })
 }
 
+/// Computes all stages up to the half-space in a folder; returns the seconds of those before it, and
+/// of it.
+fn run_trial(
+    recipe: &Recipe,
+    folder: &Path,
+    interrupted: &AtomicBool,
+) -> Result<(Vec<StageForecast>, f64), ForecastError> {
+    let trial = shortened(recipe);
+    let (mut stages, mut bem_seconds) = (Vec::new(), 0.0);
+    for (stage, _) in pipeline::status(&trial, folder)? {
+        if stage == Stage::Tables {
+            continue;
+        }
+        let seconds = computed(&trial, folder, stage, interrupted)?;
+        if stage == Stage::Bem {
+            bem_seconds = seconds;
+        } else {
+            stages.push(StageForecast { stage, seconds: Some(seconds) });
+        }
+    }
+    Ok((stages, bem_seconds))
+}
+
 /// The recipe without what is dear.
-fn one_realisation(recipe: &Recipe) -> Recipe {
+fn shortened(recipe: &Recipe) -> Recipe {
     let mut trial = recipe.clone();
     (trial.micro, trial.hybrid, trial.fem) = (None, None, None);
     (trial.tables.published, trial.tables.theories) = (Vec::new(), Vec::new());
+    let averaged = trial.bem.as_ref().is_some_and(|bem| bem.average_tolerance.is_some());
     if let Some(realise) = &mut trial.realise {
-        realise.realisations = 1;
+        let count = if averaged { realise.drawn().min(FIRST_REALISATIONS as u32) } else { 1 };
+        realise.realisations = Some(count);
+        realise.most_realisations = averaged.then_some(count);
     }
     if let Some(bem) = &mut trial.bem {
         bem.field_area_fractions.clear();
     }
     trial
+}
+
+/// What the trial gave.
+struct Trial {
+    rubber: Rubber,
+    surfaces: Vec<Surface>,
+    curves: Vec<CurveRow>,
+    solves: Vec<SolveRow>,
+}
+
+impl Trial {
+    fn read(view: &RunView, chain: &Chain) -> Result<Self, ForecastError> {
+        Ok(Self {
+            rubber: crate::stages::bem::rubber(chain.bem)?.rubber,
+            surfaces: read_surfaces(view)?,
+            curves: view.read_table::<CurveRow>("bem", CURVES_FILE)?.0,
+            solves: view.read_table::<SolveRow>("bem", SOLVES_FILE)?.0,
+        })
+    }
+
+    /// Number of curves.
+    fn count(&self) -> usize {
+        self.by_curve().count()
+    }
+
+    fn by_curve(&self) -> impl Iterator<Item = &[CurveRow]> {
+        self.curves.chunk_by(|a, b| {
+            (a.waves, a.realisation, a.speed_mm_s) == (b.waves, b.realisation, b.speed_mm_s)
+        })
+    }
+
+    /// The curves of the first realisation.
+    fn first_curves(&self) -> impl Iterator<Item = &[CurveRow]> {
+        self.by_curve().filter(|curve| curve[0].realisation == 1)
+    }
+
+    /// The first realisation of each approximation.
+    fn first_surfaces(&self) -> impl Iterator<Item = &Surface> {
+        self.surfaces.iter().filter(|surface| surface.realisation == 1)
+    }
+
+    fn curves(&self, chain: &Chain) -> Vec<CurveForecast> {
+        let threshold = chain.micro.map(|micro| micro.rms_slope_threshold);
+        self.first_curves().map(|curve| self.curve(curve, chain, threshold)).collect()
+    }
+
+    fn curve(&self, curve: &[CurveRow], chain: &Chain, threshold: Option<f64>) -> CurveForecast {
+        let (first, last) = (&curve[0], &curve[curve.len() - 1]);
+        let (waves, speed_mm_s) = (first.waves, first.speed_mm_s);
+        let own = |row: &&SolveRow| (row.waves, row.speed_mm_s) == (waves, speed_mm_s);
+        let points = || self.solves.iter().filter(own).map(|row| row.grid_points);
+        let one = |row: &&SolveRow| own(row) && row.realisation == 1;
+        let surface = self.first_surfaces().find(|surface| surface.waves == waves);
+        let profile = surface.map_or(&[][..], |surface| &surface.profile);
+        let contact = [last.pressure_mpa * 1e6, last.contact_area_fraction];
+        let speed = speed_mm_s / 1e3;
+        CurveForecast {
+            waves,
+            speed_mm_s,
+            realisations: self.realisations(waves, speed_mm_s, chain),
+            pressures_mpa: [first.pressure_mpa, last.pressure_mpa],
+            grid_points: [points().min().unwrap_or(0), points().max().unwrap_or(0)],
+            solves: self.solves.iter().filter(one).count(),
+            scales: scales::scales(&self.rubber, profile, speed, contact, threshold),
+        }
+    }
+
+    /// Realisations that the recipe takes, or is expected to take for the accuracy it asks for.
+    fn realisations(&self, waves: u32, speed_mm_s: f64, chain: &Chain) -> u32 {
+        let drawn = chain.realise.drawn();
+        let Some(tolerance) = chain.bem.average_tolerance else { return drawn };
+        let family: Vec<&[CurveRow]> = self
+            .by_curve()
+            .filter(|curve| (curve[0].waves, curve[0].speed_mm_s) == (waves, speed_mm_s))
+            .collect();
+        let needed = realisations_needed(&family, tolerance).unwrap_or(0).max(family.len());
+        drawn.min(u32::try_from(needed).unwrap_or(u32::MAX))
+    }
 }
 
 /// Computes a stage and returns the seconds it took.
@@ -176,31 +269,4 @@ fn computed(
     pipeline::run(recipe, out, selection, interrupted, &|_| ())?;
     let manifest = RunView::of(out).stage_manifest(stage.name())?;
     Ok(manifest.map_or(0.0, |manifest| manifest.seconds))
-}
-
-fn curves(
-    rubber: &Rubber,
-    surfaces: &[Surface],
-    curves: &[CurveRow],
-    solves: &[SolveRow],
-    threshold: Option<f64>,
-) -> Vec<CurveForecast> {
-    let same = |a: &CurveRow, b: &CurveRow| (a.waves, a.speed_mm_s) == (b.waves, b.speed_mm_s);
-    let of_one = |rows: &[CurveRow]| {
-        let (first, last) = (&rows[0], &rows[rows.len() - 1]);
-        let (waves, speed_mm_s) = (first.waves, first.speed_mm_s);
-        let own = || solves.iter().filter(|row| (row.waves, row.speed_mm_s) == (waves, speed_mm_s));
-        let points = || own().map(|row| row.grid_points);
-        let profile = surfaces.iter().find(|s| s.waves == waves).map_or(&[][..], |s| &s.profile);
-        let contact = [last.pressure_mpa * 1e6, last.contact_area_fraction];
-        CurveForecast {
-            waves,
-            speed_mm_s,
-            pressures_mpa: [first.pressure_mpa, last.pressure_mpa],
-            grid_points: [points().min().unwrap_or(0), points().max().unwrap_or(0)],
-            solves: own().count(),
-            scales: scales::scales(rubber, profile, speed_mm_s / 1e3, contact, threshold),
-        }
-    };
-    curves.chunk_by(same).map(of_one).collect()
 }

@@ -3,7 +3,7 @@
 use super::{PipelineError, Selection};
 use crate::artifact::{ArtifactError, Identity, Input, RunView, SchemaVersion};
 use crate::recipe::{Chain, Recipe, Work};
-use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
+use crate::rubber::{FiniteStrainRubber, Rheology, Rubber, RubberData};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
     Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro, realise,
@@ -17,7 +17,7 @@ use std::path::Path;
 pub(super) struct Plan<'a> {
     pub work: Work<'a>,
     pub scans: Vec<ScanFile>,
-    pub rubber: Rubber,
+    pub material: RubberData,
     published: Vec<Input>,
 }
 
@@ -26,27 +26,27 @@ impl<'a> Plan<'a> {
         let of = |stage| move |source| PipelineError::Stage { stage, source: Box::new(source) };
         let work = recipe.work()?;
         let (mut scans, mut published) = (Vec::new(), Vec::new());
-        let rubber = match work {
+        let material = match work {
             Work::Chain(chain) => {
                 if let Some(ingest) = chain.ingest {
                     scans = ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?;
                 }
                 published = tables::inputs(chain.tables).map_err(of(Stage::Tables))?;
-                let rubber = bem::rubber(chain.bem).map_err(of(Stage::Bem))?;
+                let material = bem::rubber(chain.bem).map_err(of(Stage::Bem))?;
                 let finite =
                     [(chain.micro.is_some(), Stage::Micro), (chain.fem.is_some(), Stage::Fem)];
                 if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
-                    check_finite_strain(&rubber, &chain.bem.rubber).map_err(of(stage))?;
+                    check_finite_strain(&material.rubber, &chain.bem.rubber).map_err(of(stage))?;
                 }
-                rubber
+                material
             }
             Work::Sinusoid(study) => {
                 let rubber = sinusoid::rubber(study).map_err(of(Stage::Sinusoid))?;
                 check_finite_strain(&rubber, &study.rubber).map_err(of(Stage::Sinusoid))?;
-                rubber
+                RubberData::from(rubber)
             }
         };
-        Ok(Self { work, scans, rubber, published })
+        Ok(Self { work, scans, material, published })
     }
 
     /// The stages of the recipe; a chain that states its waves needs no scans.
@@ -84,7 +84,7 @@ impl<'a> Plan<'a> {
         let (stage_revision, output_schemas, parameters, inputs) = match self.work {
             Work::Chain(chain) => self.chain_identity(chain, stage, view)?,
             Work::Sinusoid(study) => {
-                let parameters = study.resolved(&self.rubber);
+                let parameters = study.resolved(&self.material.rubber);
                 (sinusoid::REVISION, sinusoid::schemas(), parameters, Vec::new())
             }
         };
@@ -162,20 +162,19 @@ impl<'a> Plan<'a> {
                 (approximate::REVISION, approximate::schemas(), json!(chain.approximate))
             }
             Stage::Realise => (realise::REVISION, realise::schemas(), json!(chain.realise)),
-            Stage::Bem => (bem::REVISION, bem::schemas(), chain.bem.resolved(&self.rubber)),
+            Stage::Bem => (bem::REVISION, bem::schemas(), chain.bem.resolved(&self.material)),
             Stage::Micro => {
-                let parameters = json!({ "micro": chain.micro, "rubber": self.rubber });
+                let parameters = json!({ "micro": chain.micro, "rubber": self.material.rubber });
                 (micro::REVISION, micro::schemas(), parameters)
             }
             Stage::Hybrid => {
-                let parameters =
-                    json!({ "hybrid": chain.hybrid, "micro": chain.micro, "rubber": self.rubber });
+                let parameters = json!({ "hybrid": chain.hybrid, "micro": chain.micro, "rubber": self.material.rubber });
                 (hybrid::REVISION, hybrid::schemas(), parameters)
             }
             Stage::Fem => {
                 let parameters = json!({
                     "fem": chain.fem,
-                    "rubber": self.rubber,
+                    "rubber": self.material.rubber,
                     "speeds_mm_s": chain.bem.speeds_mm_s,
                     "area_fractions": chain.bem.area_fractions,
                 });
@@ -184,7 +183,7 @@ impl<'a> Plan<'a> {
             Stage::Tables => {
                 let mut parameters = json!(chain.tables);
                 if !chain.tables.theories.is_empty() {
-                    parameters["rubber"] = json!(self.rubber);
+                    parameters["rubber"] = json!(self.material.rubber);
                 }
                 inputs.extend(self.published.iter().cloned());
                 (tables::REVISION, tables::schemas(), parameters)

@@ -1,6 +1,13 @@
 //! The study of one sine wave as Markdown.
 
-use crate::stages::sinusoid::{AgreementRow, AsymptoteRow, Model, PeakRow, PointRow};
+use super::ReportError;
+use crate::artifact::RunView;
+use crate::report::read::rows;
+use crate::stages::Stage;
+use crate::stages::sinusoid::{
+    AGREEMENT_FILE, ASYMPTOTES_FILE, AgreementRow, AsymptoteRow, Model, PEAKS_FILE, POINTS_FILE,
+    PRESSURES_FILE, PeakRow, PointRow,
+};
 use std::fmt::Write;
 
 /// The tables of a study.
@@ -30,6 +37,21 @@ fn area(row: &PointRow) -> (Option<f64>, Option<f64>) {
 }
 
 impl Study {
+    /// The study of a run.
+    ///
+    /// # Errors
+    /// [`ReportError`] if its tables cannot be read.
+    pub fn read(run: &RunView) -> Result<Self, ReportError> {
+        let stage = Stage::Sinusoid.name();
+        Ok(Self {
+            points: run.read_table(stage, POINTS_FILE)?.0,
+            pressures: rows(run, stage, PRESSURES_FILE)?.unwrap_or_default(),
+            asymptotes: run.read_table(stage, ASYMPTOTES_FILE)?.0,
+            peaks: run.read_table(stage, PEAKS_FILE)?.0,
+            agreement: run.read_table(stage, AGREEMENT_FILE)?.0,
+        })
+    }
+
     /// Conclusions first, then what they rest on.
     pub fn markdown(&self) -> String {
         let mut text = String::new();

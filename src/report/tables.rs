@@ -1,9 +1,13 @@
 //! Friction tables in the layout of the published ones: contact area in the first column, one
 //! column per realisation, their average.
 
+use crate::artifact::{ArtifactError, RunView};
 use crate::stages::tables::{ComparisonRow, FrictionRow};
 use polars::prelude::{Column, DataFrame, PolarsError};
 use std::fmt::Write;
+
+/// More realisations than this are left to CSV and Parquet.
+const MOST_SHOWN: usize = 30;
 
 /// Friction over contact area for one number of waves and one speed.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,16 +35,48 @@ pub fn friction_tables(rows: &[FrictionRow]) -> Vec<FrictionTable> {
         .collect()
 }
 
+/// What all tables of a run have in common.
+#[derive(Debug, Clone, PartialEq)]
+pub struct About {
+    /// Name of the rubber.
+    pub rubber: String,
+    /// Temperature in °C to which it was shifted, if it was.
+    pub temperature_c: Option<f64>,
+    /// Relative accuracy that the recipe asks for, if it does.
+    pub tolerance: Option<f64>,
+}
+
+impl About {
+    /// From the parameters with which a run solved its contacts.
+    ///
+    /// # Errors
+    /// [`ArtifactError`] if the manifest of the stage is damaged.
+    pub fn of(run: &RunView) -> Result<Self, ArtifactError> {
+        let parameters = run.stage_manifest("bem")?.map(|manifest| manifest.parameters);
+        let parameters = parameters.unwrap_or_default();
+        Ok(Self {
+            rubber: parameters["rubber"]["name"].as_str().unwrap_or("unknown").to_owned(),
+            temperature_c: parameters["temperature_c"].as_f64(),
+            tolerance: parameters["average_tolerance"].as_f64(),
+        })
+    }
+}
+
 impl FrictionTable {
-    /// What the table holds, in one line; `rubber` is the name of the rubber.
-    pub fn caption(&self, rubber: &str) -> String {
+    /// What the table holds, in one line.
+    pub fn caption(&self, about: &About) -> String {
+        let tolerance = about.tolerance.map(|tolerance| format!(", tolerance {tolerance}"));
+        let temperature = about.temperature_c.map(|celsius| format!(" at {celsius} °C"));
         format!(
             "Friction coefficient over contact area fraction, model {}, {} waves, {} mm/s, {} \
-             realisations, rubber {rubber}, asperity {}",
+             realisations{}, rubber {}{}, asperity {}",
             self.model,
             self.waves,
             self.speed_mm_s,
             self.realisations(),
+            tolerance.unwrap_or_default(),
+            about.rubber,
+            temperature.unwrap_or_default(),
             crate::artifact::TOOL_VERSION
         )
     }
@@ -54,9 +90,15 @@ impl FrictionTable {
         self.rows.first().map_or(0, |row| row.realisations.len())
     }
 
+    /// Realisations that a document shows one by one: all of them, or none if they would not fit on a page.
+    fn shown(&self) -> usize {
+        let realisations = self.realisations();
+        if realisations <= MOST_SHOWN { realisations } else { 0 }
+    }
+
     fn header(&self) -> Vec<String> {
         let mut header = vec!["area_fraction".to_owned()];
-        header.extend((1..=self.realisations()).map(|k| format!("realisation_{k}")));
+        header.extend((1..=self.shown()).map(|k| format!("realisation_{k}")));
         let rest = ["average", "standard_deviation", "confidence_95", "error_estimate"];
         header.extend(rest.map(str::to_owned));
         header
@@ -67,7 +109,8 @@ impl FrictionTable {
         let optional = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.5}"));
         self.rows.iter().map(move |row| {
             let mut cells = vec![row.contact_area_fraction.to_string()];
-            cells.extend(row.realisations.iter().map(|friction| format!("{friction:.5}")));
+            let shown = row.realisations.iter().take(self.shown());
+            cells.extend(shown.map(|friction| format!("{friction:.5}")));
             cells.push(format!("{:.5}", row.mean));
             cells.push(optional(row.standard_deviation));
             cells.push(optional(row.confidence_95));
@@ -107,18 +150,19 @@ pub fn data_frame(rows: &[FrictionRow]) -> Result<DataFrame, PolarsError> {
     columns.push(optional("confidence_95", |row| row.confidence_95));
     columns.push(column("interpolation_error", |row| row.interpolation_error));
     columns.push(optional("discretisation_error", |row| row.discretisation_error));
+    columns.push(column("left_out_error", |row| row.left_out_error));
     columns.push(optional("error_estimate", |row| row.error_estimate));
     columns.push(column("pressure_mpa", |row| row.pressure_mpa));
     DataFrame::new(rows.len(), columns)
 }
 
 /// Tables as Markdown, each with its caption.
-pub fn markdown(tables: &[FrictionTable], rubber: &str) -> String {
+pub fn markdown(tables: &[FrictionTable], about: &About) -> String {
     let mut text = String::new();
     for table in tables {
         let header = table.header();
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}\n", table.caption(rubber));
+        let _ = writeln!(text, "{}\n", table.caption(about));
         let _ = writeln!(text, "| {} |", header.join(" | "));
         let _ = writeln!(text, "|{}", "---:|".repeat(header.len()));
         for cells in table.cells() {
@@ -163,10 +207,10 @@ pub fn comparison_markdown(note: &str, rows: &[ComparisonRow], realisations: usi
 }
 
 /// Tables as LaTeX with booktabs, each a floating table with its caption.
-pub fn latex(tables: &[FrictionTable], rubber: &str) -> String {
+pub fn latex(tables: &[FrictionTable], about: &About) -> String {
     let mut text = String::new();
     for table in tables {
-        let n = table.realisations();
+        let n = table.shown();
         let mut header = vec!["$A_c/A_0$".to_owned()];
         header.extend((1..=n).map(|k| k.to_string()));
         header.extend(["average", "s.d.", "95\\,\\%", "error"].map(str::to_owned));
@@ -174,7 +218,7 @@ pub fn latex(tables: &[FrictionTable], rubber: &str) -> String {
         let braced: Vec<String> = header.iter().map(|cell| format!("{{{cell}}}")).collect();
         let _ = writeln!(text, "% needs the packages booktabs and siunitx");
         let _ = writeln!(text, "\\begin{{table}}\n\\centering");
-        let _ = writeln!(text, "\\caption{{{}}}", escape(&table.caption(rubber)));
+        let _ = writeln!(text, "\\caption{{{}}}", escape(&table.caption(about)));
         let _ = writeln!(text, "\\begin{{tabular}}{{{columns}}}\n\\toprule");
         let _ = writeln!(text, "{} \\\\\n\\midrule", braced.join(" & "));
         for cells in table.cells() {
@@ -207,6 +251,10 @@ fn escape(text: &str) -> String {
 mod tests {
     use super::*;
 
+    fn about(rubber: &str) -> About {
+        About { rubber: rubber.into(), temperature_c: None, tolerance: None }
+    }
+
     fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
         FrictionRow {
             model: "bem".into(),
@@ -218,6 +266,7 @@ mod tests {
             standard_deviation: (realisations.len() > 1).then_some(0.1),
             confidence_95: None,
             interpolation_error: 0.0,
+            left_out_error: 0.0,
             discretisation_error: None,
             error_estimate: Some(0.25),
             pressure_mpa: 1.0,
@@ -231,22 +280,39 @@ mod tests {
             [row(8, 0.002, &[0.701, 0.53646]), row(8, 0.05, &[0.9, 0.8]), row(9, 0.1, &[1.0])];
         let tables = friction_tables(&rows);
         assert_eq!(tables.len(), 2);
-        let text = markdown(&tables, "50 % silica_x");
+        let text = markdown(&tables, &about("50 % silica_x"));
         assert!(text.contains("| area_fraction | realisation_1 | realisation_2 | average |"));
         assert!(
             text.contains("| 0.002 | 0.70100 | 0.53646 | 0.50000 | 0.10000 |  | 0.25000 |"),
             "{text}"
         );
-        let text = latex(&tables, "50 % silica_x");
+        let text = latex(&tables, &about("50 % silica_x"));
         assert!(text.contains("rubber 50 \\% silica\\_x"), "{text}");
         assert_eq!(text.matches("\\toprule").count(), 2);
+        let all = About { rubber: "x".into(), temperature_c: Some(-10.0), tolerance: Some(0.01) };
+        assert_eq!(
+            tables[0].caption(&all),
+            format!(
+                "Friction coefficient over contact area fraction, model bem, 8 waves, 10 mm/s, 2 \
+                 realisations, tolerance 0.01, rubber x at -10 °C, asperity {}",
+                crate::artifact::TOOL_VERSION
+            )
+        );
         assert_eq!(tables[1].file_stem(), "friction_bem_9_waves_10_mm_s");
+    }
+
+    #[test]
+    fn a_document_shows_hundreds_of_realisations_by_their_average() {
+        let table = &friction_tables(&[row(8, 0.05, &[0.5; 31])])[0];
+        assert_eq!(table.header().len(), 5);
+        assert!(markdown(std::slice::from_ref(table), &about("x")).contains("31 realisations"));
+        assert_eq!(data_frame(&table.rows).unwrap().width(), 4 + 31 + 8);
     }
 
     #[test]
     fn the_data_frame_leaves_absent_realisations_empty() {
         let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
-        assert_eq!(frame.shape(), (2, 13));
+        assert_eq!(frame.shape(), (2, 14));
         assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
     }
 }

@@ -1,18 +1,26 @@
 //! bem: sliding contact of the viscoelastic half-space, for every realisation and speed.
 
 mod curve;
+mod family;
+mod reduction;
+mod rows;
 
 use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError, schema_of};
-use crate::artifact::{
-    ArrayDataset, ArraysSchema, AttributeSchema, DatasetSchema, Metadata, Pending, Row, RunView,
-    SchemaVersion, SolveStore, Storage,
-};
+use super::{Context, StageError};
+use crate::artifact::{ArrayDataset, Metadata, Pending, RunView, SolveStore, Storage};
 use crate::contact::CurveValue;
 use crate::recipe::{Violation, demand};
-use crate::rubber::{Rubber, read_rubber};
+use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
 use curve::{Curve, FieldSolution};
+use family::{CurveResult, Family};
+pub(crate) use family::{FIRST_REALISATIONS, realisations_needed};
 use rayon::prelude::*;
+use reduction::LeftOut;
+use rows::FIELDS_DESCRIPTION;
+pub use rows::{
+    CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, REALISATIONS_FILE,
+    RealisationsRow, SOLVES_FILE, SolveRow, fields_schema, schemas,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -20,7 +28,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// Section `[bem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +36,10 @@ pub const REVISION: u32 = 3;
 pub struct Bem {
     /// Rubber file.
     pub rubber: PathBuf,
+    /// Temperature in °C to which the rubber is shifted; its file needs a `[temperature]` section.
+    /// Not set: the moduli as they stand in the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature_c: Option<f64>,
     /// Sliding speeds in mm/s.
     pub speeds_mm_s: Vec<f64>,
     /// Contact area fractions at which friction is wanted, ascending.
@@ -41,6 +53,11 @@ pub struct Bem {
     /// estimated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid_tolerance: Option<f64>,
+    /// Relative accuracy of the averages over the realisations, with all errors: realisations are solved
+    /// until their averages have it or there are no more, and waves that matter less are left out of most of
+    /// them. Not set: all realisations, with all waves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub average_tolerance: Option<f64>,
     /// Grid points per shortest wavelength, at least; the grid is the next power of two.
     #[serde(default = "default_points")]
     pub points_per_shortest_wavelength: u32,
@@ -102,6 +119,10 @@ impl Bem {
         for (key, tolerance) in tolerances.into_iter().filter_map(|(key, t)| Some((key, t?))) {
             demand((1e-6..=0.2).contains(&tolerance), key, tolerance, "between 1e-6 and 0.2")?;
         }
+        if let Some(tolerance) = self.average_tolerance {
+            let key = "bem.average_tolerance";
+            demand((1e-4..=0.5).contains(&tolerance), key, tolerance, "between 1e-4 and 0.5")?;
+        }
         let points = self.points_per_shortest_wavelength;
         let key = "bem.points_per_shortest_wavelength";
         demand((4..=65536).contains(&points), key, points, "4 to 65536")
@@ -112,10 +133,17 @@ impl Bem {
         self.tolerance.unwrap_or(1e-3)
     }
 
-    /// The parameters with the rubber itself in place of its file: what the results depend on.
-    pub fn resolved(&self, rubber: &Rubber) -> Value {
+    /// The parameters with the rubber itself in place of its file: what the results depend on. The
+    /// measured frequencies and temperatures, if there are any, decide on warnings.
+    pub fn resolved(&self, material: &RubberData) -> Value {
         let mut value = json!(self);
-        value["rubber"] = json!(rubber);
+        value["rubber"] = json!(material.rubber);
+        if let Some(measured) = material.measured {
+            value["measured"] = json!(measured);
+        }
+        if let Some(measured_c) = material.temperature.and_then(|law| law.measured_c) {
+            value["measured_c"] = json!(measured_c);
+        }
         value
     }
 }
@@ -124,226 +152,187 @@ fn no_repeats(values: &[f64]) -> bool {
     values.iter().enumerate().all(|(i, a)| values[..i].iter().all(|b| a != b))
 }
 
-/// Reads the rubber of a recipe.
+/// Reads the rubber of a recipe, at its temperature if it has one.
 ///
 /// # Errors
 /// [`StageError::Rubber`].
-pub fn rubber(parameters: &Bem) -> Result<Rubber, StageError> {
-    Ok(read_rubber(&parameters.rubber)?)
+pub fn rubber(parameters: &Bem) -> Result<RubberData, StageError> {
+    Ok(read_rubber_at(&parameters.rubber, parameters.temperature_c)?)
 }
 
-/// All solves: `solves.arrow`.
-pub const SOLVES_FILE: &str = "solves.arrow";
-/// Friction at the wanted contact areas: `curves.arrow`.
-pub const CURVES_FILE: &str = "curves.arrow";
-/// Pressure and separation on request: `fields.h5`.
-pub const FIELDS_FILE: &str = "fields.h5";
-/// Schema name of [`FIELDS_FILE`].
-pub const FIELDS_SCHEMA: &str = "asperity.bem.fields";
-/// Schema version of [`FIELDS_FILE`].
-pub const FIELDS_VERSION: u32 = 1;
-const FIELDS_DESCRIPTION: &str = "pressure and separation over one period of the profile";
-
-/// One solved contact.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SolveRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
-    /// Number of the realisation, from 1.
-    pub realisation: u32,
-    /// Sliding speed.
-    #[schemars(extend("unit" = "mm/s"))]
-    pub speed_mm_s: f64,
-    /// Mean pressure.
-    #[schemars(extend("unit" = "MPa"))]
-    pub pressure_mpa: f64,
-    /// Friction coefficient.
-    #[schemars(extend("unit" = "1"))]
-    pub friction_coefficient: f64,
-    /// Friction coefficient from the hysteretic power of the pressure spectrum; the difference to
-    /// the friction coefficient measures the grid.
-    #[schemars(extend("unit" = "1"))]
-    pub hysteretic_friction: f64,
-    /// Contact area fraction.
-    #[schemars(extend("unit" = "1"))]
-    pub contact_area_fraction: f64,
-    /// Mean separation.
-    #[schemars(extend("unit" = "mm"))]
-    pub mean_separation_mm: f64,
-    /// Estimated error of the friction coefficient by the grid, absolute; absent where coarser grids
-    /// do not resolve the contact.
-    #[schemars(extend("unit" = "1"))]
-    pub discretisation_error: Option<f64>,
-    /// Residual of the contact conditions, relative.
-    #[schemars(extend("unit" = "1"))]
-    pub residual: f64,
-    /// Active-set iterations on the finest grid.
-    pub iterations: u64,
-    /// Grid points.
-    pub grid_points: u64,
-    /// Wall time of the solve.
-    #[schemars(extend("unit" = "s", "volatile" = true))]
-    pub seconds: f64,
+/// What the curves are made of.
+struct Work<'a> {
+    parameters: &'a Bem,
+    rubber: &'a Rubber,
+    store: &'a SolveStore,
 }
 
-impl Row for SolveRow {
-    const SCHEMA: &'static str = "asperity.bem.solves";
-    const VERSION: u32 = 2;
-}
-
-/// Friction of one realisation at one wanted contact area.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct CurveRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
-    /// Number of the realisation, from 1.
-    pub realisation: u32,
-    /// Sliding speed.
-    #[schemars(extend("unit" = "mm/s"))]
-    pub speed_mm_s: f64,
-    /// Contact area fraction.
-    #[schemars(extend("unit" = "1"))]
-    pub contact_area_fraction: f64,
-    /// Mean pressure, interpolated.
-    #[schemars(extend("unit" = "MPa"))]
-    pub pressure_mpa: f64,
-    /// Friction coefficient, interpolated.
-    #[schemars(extend("unit" = "1"))]
-    pub friction_coefficient: f64,
-    /// Estimated error of the friction coefficient by interpolation, absolute.
-    #[schemars(extend("unit" = "1"))]
-    pub interpolation_error: f64,
-    /// The larger of the errors by the grid of the two solves that the friction lies between; absent
-    /// where one of them is not known.
-    #[schemars(extend("unit" = "1"))]
-    pub discretisation_error: Option<f64>,
-}
-
-impl Row for CurveRow {
-    const SCHEMA: &'static str = "asperity.bem.curves";
-    const VERSION: u32 = 2;
-}
-
-/// Schemas of the results.
-pub fn schemas() -> Vec<SchemaVersion> {
-    let fields = SchemaVersion { schema: FIELDS_SCHEMA.into(), version: FIELDS_VERSION };
-    vec![schema_of::<SolveRow>(), schema_of::<CurveRow>(), fields]
-}
-
-/// What [`FIELDS_FILE`] holds.
-pub fn fields_schema() -> ArraysSchema {
-    let attribute = |name, description| AttributeSchema { name, kind: "f64", description };
-    let attributes = vec![
-        attribute("spacing_m", "distance between neighbouring points"),
-        attribute("mean_pressure_pa", "mean pressure of the solve"),
-        attribute("wanted_area_fraction", "contact area fraction that the recipe asks for"),
-        attribute("contact_area_fraction", "contact area fraction of the solve"),
-        attribute("friction_coefficient", "friction coefficient of the solve"),
-        attribute("mean_separation_m", "mean separation of the solve"),
-    ];
-    let dataset = |path, unit, description| DatasetSchema {
-        path,
-        unit,
-        description,
-        attributes: attributes.clone(),
-    };
-    ArraysSchema {
-        schema: FIELDS_SCHEMA,
-        version: FIELDS_VERSION,
-        description: FIELDS_DESCRIPTION,
-        datasets: vec![
-            dataset(
-                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",
-                "Pa",
-                "contact pressure, zero outside the contact",
-            ),
-            dataset(
-                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/separation",
-                "m",
-                "separation of rubber and profile, zero in the contact",
-            ),
-        ],
-    }
-}
-
-/// Solves the contacts that are not in the store and writes the results; returns warnings.
+/// Solves the contacts that are not in the store and writes the results; returns warnings where
+/// the rubber was not measured at its temperature or at the frequencies that the surfaces excite.
 ///
-/// Realisations and speeds run side by side; each curve is computed by itself, so the numbers do
-/// not depend on the number of threads.
+/// Realisations and speeds run side by side; each curve is computed by itself, and how many there are
+/// follows from the curves, so the numbers do not depend on the number of threads.
 ///
 /// # Errors
 /// [`StageError::Contact`] for a curve that cannot be had, the one that failed first in time;
 /// [`StageError::Interrupted`]. Solves that are done are kept in the store.
 pub fn run(
     parameters: &Bem,
-    rubber: &Rubber,
+    material: &RubberData,
     run: &RunView,
     store: &SolveStore,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
-    let tasks: Vec<(&Surface, f64)> = surfaces
-        .iter()
-        .flat_map(|surface| parameters.speeds_mm_s.iter().map(move |speed| (surface, *speed)))
-        .collect();
-    let done = AtomicU64::new(0);
-    let total = tasks.len() as u64;
-    (context.progress)(0, total);
-    let results: Vec<CurveResult> = tasks
-        .par_iter()
-        .map(|(surface, speed)| {
-            context.check_interrupt()?;
-            let result = one_curve(parameters, rubber, surface, *speed, store, context)?;
-            (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
-            Ok(result)
+    let tolerance = parameters.average_tolerance;
+    let mut families: Vec<Family> = surfaces
+        .chunk_by(|a, b| a.waves == b.waves)
+        .flat_map(|of_one| {
+            let speeds = parameters.speeds_mm_s.iter();
+            speeds.map(move |speed| Family::new(of_one, *speed, tolerance))
         })
-        .collect::<Result<_, StageError>>()?;
-    write(&mut context.pending, &results)
+        .collect();
+    let work = Work { parameters, rubber: &material.rubber, store };
+    let done = AtomicU64::new(0);
+    while families.iter().any(|family| !family.open().is_empty()) {
+        work.solve_open(&mut families, &done, context)?;
+        let Some(tolerance) = tolerance else { break };
+        families.par_iter_mut().try_for_each(|family| work.extend(family, tolerance, context))?;
+    }
+    write(&mut context.pending, &families)?;
+    Ok(material.extrapolations(excited(parameters, &surfaces)))
 }
 
-/// The solves, the curve and the fields of one surface at one speed.
-struct CurveResult {
-    solves: Vec<SolveRow>,
-    values: Vec<CurveRow>,
-    fields: Vec<FieldSolution>,
+/// The frequencies that the waves of all surfaces excite at all speeds.
+fn excited(parameters: &Bem, surfaces: &[Surface]) -> Option<FrequencyRange> {
+    let waves = surfaces.iter().flat_map(|surface| &surface.profile);
+    let wavelengths = waves.filter(|wave| wave.amplitude != 0.0).map(|wave| wave.wavelength);
+    let speeds = parameters.speeds_mm_s.iter().map(|speed| speed / 1e3);
+    FrequencyRange::excited(wavelengths, speeds)
 }
 
-fn one_curve(
-    parameters: &Bem,
-    rubber: &Rubber,
-    surface: &Surface,
-    speed_mm_s: f64,
-    store: &SolveStore,
-    context: &Context,
-) -> Result<CurveResult, StageError> {
-    let mut curve = Curve::new(parameters, rubber, surface, speed_mm_s, store, context.interrupted);
-    let (values, fields) = curve.compute(parameters).map_err(|source| {
-        if context.check_interrupt().is_err() {
-            return StageError::Interrupted;
+impl Work<'_> {
+    /// Solves all curves that are wanted, side by side.
+    fn solve_open(
+        &self,
+        families: &mut [Family],
+        done: &AtomicU64,
+        context: &Context,
+    ) -> Result<(), StageError> {
+        let total: usize = families.iter().map(|family| family.wanted).sum();
+        (context.progress)(done.load(Ordering::Relaxed), total as u64);
+        let tasks: Vec<(&Family, &Surface)> = families
+            .iter()
+            .flat_map(|family| family.open().iter().map(move |surface| (family, surface)))
+            .collect();
+        let results: Vec<CurveResult> = tasks
+            .par_iter()
+            .map(|(family, surface)| {
+                context.check_interrupt()?;
+                let result = self.of_family(family, surface, context)?;
+                (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total as u64);
+                Ok(result)
+            })
+            .collect::<Result<_, StageError>>()?;
+        let mut results = results.into_iter();
+        for family in families {
+            let count = family.open().len();
+            family.results.extend(results.by_ref().take(count));
         }
-        let (waves, realisation) = (surface.waves, surface.realisation);
-        StageError::Contact { waves, realisation, speed_mm_s, source: Box::new(source) }
-    })?;
-    let row = |value: &CurveValue| CurveRow {
-        waves: surface.waves,
-        realisation: surface.realisation,
-        speed_mm_s,
-        contact_area_fraction: value.contact_area_fraction,
-        pressure_mpa: value.mean_pressure / 1e6,
-        friction_coefficient: value.friction_coefficient,
-        interpolation_error: value.interpolation_error,
-        discretisation_error: value.discretisation_error,
-    };
-    let values = values.iter().map(row).collect();
-    Ok(CurveResult { solves: curve.into_solves(), values, fields })
+        Ok(())
+    }
+
+    /// The curve of one surface of a family, without the waves that the family leaves out of it.
+    fn of_family(
+        &self,
+        family: &Family,
+        surface: &Surface,
+        context: &Context,
+    ) -> Result<CurveResult, StageError> {
+        if surface.realisation as usize <= family.with_all_waves {
+            return self.one_curve(surface, family.speed_mm_s, context);
+        }
+        let reduced = family.left_out.reduce(surface);
+        let mut result = self.one_curve(&reduced, family.speed_mm_s, context)?;
+        family.left_out.complete(self.rubber, surface, &mut result.values);
+        Ok(result)
+    }
+
+    /// How many realisations a family needs; if many more, which waves they can do without.
+    fn extend(
+        &self,
+        family: &mut Family,
+        tolerance: f64,
+        context: &Context,
+    ) -> Result<(), StageError> {
+        let solved = family.results.len();
+        family.extend(tolerance);
+        // Fields show the whole surface.
+        let whole = !self.parameters.field_area_fractions.is_empty();
+        if whole || !LeftOut::pays(solved, family.wanted) {
+            return Ok(());
+        }
+        let full: Vec<&[CurveRow]> =
+            family.results.iter().map(|result| &result.values[..]).collect();
+        let surfaces = &family.surfaces[..solved];
+        let left_out = LeftOut::find(self.rubber, surfaces, &full, tolerance, |surface| {
+            self.one_curve(surface, family.speed_mm_s, context).map(|result| result.values)
+        });
+        context.check_interrupt()?;
+        if left_out != LeftOut::default() {
+            (family.left_out, family.with_all_waves) = (left_out, solved);
+        }
+        Ok(())
+    }
+
+    fn one_curve(
+        &self,
+        surface: &Surface,
+        speed_mm_s: f64,
+        context: &Context,
+    ) -> Result<CurveResult, StageError> {
+        let Self { parameters, rubber, store } = *self;
+        let mut curve =
+            Curve::new(parameters, rubber, surface, speed_mm_s, store, context.interrupted);
+        let (values, fields) = curve.compute(parameters).map_err(|source| {
+            if context.check_interrupt().is_err() {
+                return StageError::Interrupted;
+            }
+            let (waves, realisation) = (surface.waves, surface.realisation);
+            StageError::Contact { waves, realisation, speed_mm_s, source: Box::new(source) }
+        })?;
+        let row = |value: &CurveValue| CurveRow {
+            waves: surface.waves,
+            realisation: surface.realisation,
+            speed_mm_s,
+            contact_area_fraction: value.contact_area_fraction,
+            pressure_mpa: value.mean_pressure / 1e6,
+            friction_coefficient: value.friction_coefficient,
+            interpolation_error: value.interpolation_error,
+            discretisation_error: value.discretisation_error,
+            left_out_error: 0.0,
+        };
+        let values = values.iter().map(row).collect();
+        Ok(CurveResult { solves: curve.into_solves(), values, fields })
+    }
 }
 
-fn write(pending: &mut Pending, results: &[CurveResult]) -> Result<Vec<String>, StageError> {
+/// Writes the results by number of waves, realisation and speed.
+fn write(pending: &mut Pending, families: &[Family]) -> Result<(), StageError> {
     let none = Metadata::new();
+    let mut results: Vec<&CurveResult> = Vec::new();
+    for of_one in families.chunk_by(|a, b| std::ptr::eq(a.surfaces, b.surfaces)) {
+        let most = of_one.iter().map(|family| family.results.len()).max().unwrap_or(0);
+        for k in 0..most {
+            results.extend(of_one.iter().filter_map(|family| family.results.get(k)));
+        }
+    }
     let solves: Vec<_> = results.iter().flat_map(|r| r.solves.iter().cloned()).collect();
     pending.write_table(SOLVES_FILE, &solves, &none)?;
     let values: Vec<_> = results.iter().flat_map(|r| r.values.iter().cloned()).collect();
     pending.write_table(CURVES_FILE, &values, &none)?;
+    let counts: Vec<_> = families.iter().filter_map(realisations_row).collect();
+    pending.write_table(REALISATIONS_FILE, &counts, &none)?;
     let fields: Vec<ArrayDataset> =
         results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
     if !fields.is_empty() {
@@ -351,5 +340,17 @@ fn write(pending: &mut Pending, results: &[CurveResult]) -> Result<Vec<String>, 
         let storage = Storage::Compressed;
         pending.write_arrays(FIELDS_FILE, schema, FIELDS_VERSION, description, storage, &fields)?;
     }
-    Ok(Vec::new())
+    Ok(())
+}
+
+fn realisations_row(family: &Family) -> Option<RealisationsRow> {
+    let surface = family.surfaces.first()?;
+    let left_out = family.left_out.wavelengths(surface).iter().map(|metre| metre * 1e3).collect();
+    Some(RealisationsRow {
+        waves: surface.waves,
+        speed_mm_s: family.speed_mm_s,
+        realisations: family.results.len() as u32,
+        with_all_waves: family.with_all_waves.min(family.results.len()) as u32,
+        left_out_wavelengths_mm: left_out,
+    })
 }

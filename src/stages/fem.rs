@@ -2,13 +2,13 @@
 //! small enough; what the other models are measured by.
 
 use super::bem::Bem;
-use super::micro::columns;
+use super::micro::{columns, is_of};
 use super::realise::{Surface, read_surfaces};
 use super::{Context, SolveError, StageError, schema_of};
 use crate::artifact::{Digest, Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::fem::error::FemError;
 use crate::fem::profile::RigidProfile;
-use crate::fem::steady::{BlockOptions, SteadyContact};
+use crate::fem::steady::{BlockOptions, COLUMNS_RANGE, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
 use crate::numerics::interpolation::CubicHermite;
 use crate::recipe::{Violation, demand};
@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 /// Revision of the solver: part of the key of every stored solve.
 const SOLVER_REVISION: u32 = 3;
 
@@ -35,11 +35,18 @@ pub struct Fem {
     pub columns_per_shortest_wavelength: u32,
     /// Ratio of neighbouring pressures that are solved; friction is interpolated between them.
     pub pressure_ratio: f64,
+    /// Whether the curves are solved on half the columns too, for the error by the mesh: two fifths more
+    /// work. Set by the key `tolerance` of the recipe.
+    pub estimate_mesh_error: bool,
 }
 
 impl Default for Fem {
     fn default() -> Self {
-        Self { columns_per_shortest_wavelength: 96, pressure_ratio: 1.25 }
+        Self {
+            columns_per_shortest_wavelength: 96,
+            pressure_ratio: 1.25,
+            estimate_mesh_error: false,
+        }
     }
 }
 
@@ -80,11 +87,16 @@ pub struct FemCurveRow {
     /// Estimated error of the friction coefficient by interpolation, absolute.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
+    /// Estimated error of the friction coefficient by the mesh: its difference to that on half the
+    /// columns, three times the error where friction converges with their square; absent where that is
+    /// not solved.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
 }
 
 impl Row for FemCurveRow {
     const SCHEMA: &'static str = "asperity.fem.curves";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// One solved contact at finite deformation.
@@ -152,6 +164,7 @@ pub fn run(
     let tasks: Vec<(&Surface, f64)> = surfaces
         .iter()
         .flat_map(|surface| bem.speeds_mm_s.iter().map(move |speed| (surface, *speed)))
+        .filter(|(surface, speed)| half_space.iter().any(|row| is_of(row, surface, *speed)))
         .collect();
     let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
     (context.progress)(0, total);
@@ -175,11 +188,8 @@ pub fn run(
 
 /// Pressure in Pa of the smallest wanted area on the half-space.
 fn first_guess(half_space: &[CurveRow], surface: &Surface, speed_mm_s: f64) -> f64 {
-    let same = |row: &&CurveRow| {
-        (row.waves, row.realisation) == (surface.waves, surface.realisation)
-            && row.speed_mm_s == speed_mm_s
-    };
-    half_space.iter().find(same).map_or(1e5, |row| row.pressure_mpa * 1e6)
+    let first = half_space.iter().find(|row| is_of(row, surface, speed_mm_s));
+    first.map_or(1e5, |row| row.pressure_mpa * 1e6)
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -203,13 +213,23 @@ fn one_curve(
             source: Box::new(source),
         },
     };
-    let mut solver =
-        Solver::new(parameters, rubber, surface, speed_mm_s, store, context).map_err(failed)?;
+    let columns = columns_of(parameters, surface);
+    let new =
+        |columns| Solver::new(columns, parameters, rubber, surface, speed_mm_s, store, context);
+    let mut solver = new(columns).map_err(failed)?;
     let ended = match solver.sweep(&bem.area_fractions, guess) {
         Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => Some(error),
         other => other.map_err(failed)?,
     };
-    let rows = solver.values(&bem.area_fractions);
+    let mut rows = solver.values(&bem.area_fractions);
+    if parameters.estimate_mesh_error {
+        let mut coarser = new((columns / 2).max(*COLUMNS_RANGE.start())).map_err(failed)?;
+        match coarser.sweep(&bem.area_fractions, guess) {
+            Ok(_) | Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
+            Err(error) => return Err(failed(error)),
+        }
+        add_mesh_errors(&mut rows, &coarser.values(&bem.area_fractions));
+    }
     let missing = bem.area_fractions.len() - rows.len();
     let warning = (missing > 0).then(|| {
         let why = ended.map_or_else(
@@ -227,6 +247,25 @@ fn one_curve(
         solves: solver.solves,
         warnings: warning.into_iter().chain(coarse).collect(),
     })
+}
+
+/// Writes the differences to the values of a coarser mesh, where it has them.
+fn add_mesh_errors(rows: &mut [FemCurveRow], coarser: &[FemCurveRow]) {
+    for row in rows {
+        let same =
+            coarser.iter().find(|other| other.contact_area_fraction == row.contact_area_fraction);
+        row.discretisation_error =
+            same.map(|other| (row.friction_coefficient - other.friction_coefficient).abs());
+    }
+}
+
+/// Columns of the mesh of a surface.
+fn columns_of(parameters: &Fem, surface: &Surface) -> usize {
+    let waves = &surface.profile;
+    let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+    let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
+    let shortest = present.map(|wave| wave.wavelength).fold(period, f64::min);
+    columns(parameters.columns_per_shortest_wavelength, period, shortest)
 }
 
 /// The curve of one surface at one speed.
@@ -261,6 +300,7 @@ const MOST_SOLVES: usize = 120;
 
 impl<'a> Solver<'a> {
     fn new(
+        columns: usize,
         parameters: &Fem,
         rubber: &Rubber,
         surface: &'a Surface,
@@ -270,9 +310,6 @@ impl<'a> Solver<'a> {
     ) -> Result<Self, SolveError> {
         let waves = &surface.profile;
         let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
-        let shortest = present.map(|wave| wave.wavelength).fold(period, f64::min);
-        let columns = columns(parameters.columns_per_shortest_wavelength, period, shortest);
         let profile = RigidProfile::from_waves(waves, period);
         let (rheology, options) = (Rheology::NeoHookean, BlockOptions::new(columns));
         let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?;
@@ -387,6 +424,7 @@ impl<'a> Solver<'a> {
                 pressure_mpa: pressure.at(area.ln()).exp(),
                 friction_coefficient: curve.at(area.ln()),
                 interpolation_error: errors.at(area.ln()),
+                discretisation_error: None,
             })
             .collect()
     }

@@ -23,7 +23,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[hybrid]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -99,6 +99,13 @@ pub struct HybridRow {
     /// Estimated error of the correction by interpolation between the samples.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
+    /// Estimated error by the grid of the half-space and the mesh of the microscale; absent where one
+    /// of them is not known.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
+    /// Bound of the change of the mean half-space friction by waves that were left out.
+    #[schemars(extend("unit" = "1"))]
+    pub left_out_error: f64,
     /// Share of the macro points that count as contact points: their local pressure is at least
     /// the smallest one sampled.
     #[schemars(extend("unit" = "1"))]
@@ -116,7 +123,7 @@ pub struct HybridRow {
 
 impl Row for HybridRow {
     const SCHEMA: &'static str = "asperity.hybrid.curves";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// One local correction: the macro points over one period of the microscale, averaged.
@@ -316,6 +323,10 @@ fn microscale(
         column(|row| row.friction_finite_deformation),
         column(|row| row.area_finite_deformation - row.area_half_space),
         column(|row| row.interpolation_error),
+    )
+    .with_discretisation_errors(
+        &pressures,
+        samples.iter().map(|row| row.discretisation_error).collect(),
     );
     Ok(Some((microscale, law)))
 }
@@ -340,6 +351,11 @@ fn corrected(
         correction_force: correction.as_ref().map(|c| c.force),
         correction_of_area: correction.as_ref().map(|c| c.area),
         interpolation_error: curve.interpolation_error + microscale.interpolation_error(),
+        discretisation_error: correction
+            .as_ref()
+            .and_then(|c| c.discretisation_error)
+            .zip(curve.discretisation_error)
+            .map(|(mesh, grid)| mesh + grid),
         contact_points_fraction: points as f64 / local.len() as f64,
         largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max) / 1e6,
         largest_sample_mpa: microscale.largest_pressure() / 1e6,
@@ -375,6 +391,8 @@ fn uncorrected(curve: &CurveRow) -> HybridRow {
         correction_force: Some(0.0),
         correction_of_area: Some(0.0),
         interpolation_error: curve.interpolation_error,
+        discretisation_error: curve.discretisation_error,
+        left_out_error: curve.left_out_error,
         contact_points_fraction: 0.0,
         largest_pressure_mpa: 0.0,
         largest_sample_mpa: 0.0,

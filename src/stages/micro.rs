@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// Section `[micro]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,6 +34,9 @@ pub struct Micro {
     pub columns_per_shortest_wavelength: u32,
     /// Accuracy of friction by interpolation between sampled pressures, relative to the friction.
     pub tolerance: f64,
+    /// Whether every sample is solved on half the columns too, for the error by the mesh: two fifths more
+    /// work. Set by the key `tolerance` of the recipe.
+    pub estimate_mesh_error: bool,
     /// Grid points of the macro surface on its shortest wave, at least; the grid is the next power
     /// of two.
     pub points_per_shortest_macro_wavelength: u32,
@@ -45,6 +48,7 @@ impl Default for Micro {
             rms_slope_threshold: 1.0,
             columns_per_shortest_wavelength: 96,
             tolerance: 1e-3,
+            estimate_mesh_error: false,
             points_per_shortest_macro_wavelength: 32,
         }
     }
@@ -118,6 +122,11 @@ pub struct SampleRow {
     /// Estimated error of the difference of both frictions by interpolation at this sample.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
+    /// Estimated error of the friction coefficient at finite deformation by the mesh; absent where the
+    /// coarser mesh was not solved.
+    #[schemars(extend("unit" = "1"))]
+    #[serde(default)]
+    pub discretisation_error: Option<f64>,
     /// Residual of the finite-deformation contact, relative.
     #[schemars(extend("unit" = "1"))]
     pub residual: f64,
@@ -130,7 +139,7 @@ pub struct SampleRow {
 
 impl Row for SampleRow {
     const SCHEMA: &'static str = "asperity.micro.samples";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// The repulsive law of the half-space: `law.arrow`.
@@ -244,7 +253,8 @@ fn tasks<'a>(
             let (waves, threshold) = (surface.waves, parameters.rms_slope_threshold);
             return Err(StageError::NoMacroscale { waves, threshold });
         }
-        for &speed_mm_s in &speeds {
+        let solved = |speed: &&f64| curves.iter().any(|row| is_of(row, surface, **speed));
+        for &speed_mm_s in speeds.iter().filter(solved) {
             let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
             let owner = Owner { waves: surface.waves, realisation };
             let shared = tasks
@@ -262,6 +272,13 @@ fn tasks<'a>(
         }
     }
     Ok(tasks)
+}
+
+/// Whether a value of the half-space is of that surface and speed: not all surfaces that were drawn
+/// are needed.
+pub(crate) fn is_of(row: &CurveRow, surface: &Surface, speed_mm_s: f64) -> bool {
+    (row.waves, row.realisation) == (surface.waves, surface.realisation)
+        && row.speed_mm_s == speed_mm_s
 }
 
 /// An approximation, or one realisation of it, as the tables name it.
@@ -335,7 +352,10 @@ fn one_task(
     let mut curve = MicroCurve::new(parameters, rubber, task, store, context.interrupted);
     let (law, rows) = curve.law().map_err(failed)?;
     let largest = largest_pressure(parameters, rubber, task, curves, &law).map_err(failed)?;
-    let (samples, warning) = curve.sample(largest).map_err(failed)?;
+    let (mut samples, warning) = curve.sample(largest).map_err(failed)?;
+    if parameters.estimate_mesh_error {
+        curve.estimate_mesh_error(&mut samples).map_err(failed)?;
+    }
     Ok(TaskResult { samples, law: rows, warning })
 }
 
@@ -351,8 +371,7 @@ fn largest_pressure(
     for surface in &task.surfaces {
         let pressures = curves
             .iter()
-            .filter(|row| row.waves == surface.waves && row.realisation == surface.realisation)
-            .filter(|row| row.speed_mm_s == task.speed_mm_s)
+            .filter(|row| is_of(row, surface, task.speed_mm_s))
             .map(|row| row.pressure_mpa * 1e6);
         let mean = pressures.fold(0.0, f64::max);
         let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);

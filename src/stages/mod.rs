@@ -355,6 +355,17 @@ pub enum SolveError {
         /// What was reached.
         reason: String,
     },
+    /// A contact so small that its friction is the slope of the profile at one point.
+    #[error(
+        "a contact area fraction of {area:e} is less than two of {points} grid points: leave it out of \
+         bem.area_fractions, or raise bem.points_per_shortest_wavelength"
+    )]
+    Unresolved {
+        /// The contact area fraction.
+        area: f64,
+        /// Points of the finest grid.
+        points: usize,
+    },
     /// The store of solves.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),

@@ -18,8 +18,13 @@ pub const REVISION: u32 = 1;
 pub struct Realise {
     /// Numbers of waves of the approximations to realise, out of `approximate.waves`.
     pub waves: Vec<u32>,
-    /// Number of realisations; the average is over them.
-    pub realisations: u32,
+    /// Number of realisations; the average is over them. Where the recipe has a `tolerance`, their number
+    /// follows from it and not from this key, which may then be left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub realisations: Option<u32>,
+    /// Most realisations that a `tolerance` may take, 1000 if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most_realisations: Option<u32>,
     /// Seed of the phases: same seed, same surfaces, on every machine.
     pub seed: u64,
 }
@@ -27,12 +32,27 @@ pub struct Realise {
 impl Realise {
     pub(crate) fn check(&self) -> Result<(), Violation> {
         demand(!self.waves.is_empty(), "realise.waves", &self.waves, "at least one number")?;
-        let count = self.realisations;
-        demand((1..=100_000).contains(&count), "realise.realisations", count, "1 to 100000")?;
+        let keys = [
+            ("realise.realisations", self.realisations),
+            ("realise.most_realisations", self.most_realisations),
+        ];
+        for (key, count) in keys.into_iter().filter_map(|(key, count)| Some((key, count?))) {
+            demand((1..=100_000).contains(&count), key, count, "1 to 100000")?;
+        }
+        let wanted = "a number, or a `tolerance` that it follows from";
+        demand(self.drawn() > 0, "realise.realisations", 0, wanted)?;
         // TOML's integers are signed.
         demand(self.seed < 1 << 63, "realise.seed", self.seed, "below 2^63")
     }
+
+    /// Number of surfaces that are drawn: as many as there may be need of. To draw one costs nothing.
+    pub fn drawn(&self) -> u32 {
+        self.most_realisations.or(self.realisations).unwrap_or(0)
+    }
 }
+
+/// Most realisations for a `tolerance`, unless the recipe says otherwise.
+pub(crate) const MOST_REALISATIONS: u32 = 1000;
 
 /// The realised waves: `surfaces.arrow`.
 pub const SURFACES_FILE: &str = "surfaces.arrow";
@@ -91,7 +111,7 @@ pub fn run(
         if scales.iter().all(|scale| scale.amplitude == 0.0) {
             return Err(StageError::NoWaves { waves });
         }
-        for realisation in 1..=parameters.realisations {
+        for realisation in 1..=parameters.drawn() {
             let surface = random_phases(&scales, parameters.seed, u64::from(realisation));
             rows.extend((1..).zip(surface).map(|(scale, wave)| SurfaceRow {
                 waves,

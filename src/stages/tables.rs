@@ -19,12 +19,13 @@ use models::comparisons;
 pub use models::{MODELS_FILE, ModelRow};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -151,15 +152,18 @@ pub struct FrictionRow {
     /// two.
     #[schemars(extend("unit" = "1"))]
     pub confidence_95: Option<f64>,
-    /// Largest estimated error of a realisation by interpolation.
+    /// Estimated error of the mean by interpolation: the mean of those of the realisations.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
-    /// Largest estimated error of a realisation by the grid; absent where it is not known, as for
-    /// `hybrid` and `fem`, whose meshes are not refined in a run.
+    /// Estimated error of the mean by the grid, the mean of those of the realisations; absent where one
+    /// is not known, as for `hybrid` and `fem` without `tolerance`.
     #[schemars(extend("unit" = "1"))]
     pub discretisation_error: Option<f64>,
-    /// Sum of the statistical error, which is `confidence_95`, the interpolation error and the
-    /// discretisation error; absent where one of them is not known.
+    /// Bound of the change of the mean by waves that most realisations were solved without.
+    #[schemars(extend("unit" = "1"))]
+    pub left_out_error: f64,
+    /// Sum of the statistical error, which is `confidence_95`, the interpolation error, the
+    /// discretisation error and that by waves left out; absent where one of them is not known.
     #[schemars(extend("unit" = "1"))]
     pub error_estimate: Option<f64>,
     /// Mean pressure averaged over the realisations.
@@ -174,7 +178,7 @@ pub struct FrictionRow {
 
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
 }
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
@@ -257,12 +261,12 @@ pub fn run(
     if models.hybrid {
         let (hybrid, _) = run.read_table::<HybridRow>("hybrid", HYBRID_FILE)?;
         let values = hybrid.iter().filter_map(value_of).collect();
-        rows.extend(average(HYBRID, complete(values, realisations(&bem))));
+        rows.extend(average(HYBRID, complete(values, &bem)));
     }
     if models.fem {
         let (fem, _) = run.read_table::<FemCurveRow>("fem", FEM_FILE)?;
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
-        rows.extend(average(FEM, complete(values, realisations(&bem))));
+        rows.extend(average(FEM, complete(values, &bem)));
     }
     let (theories, constants) = (&parameters.theories, &parameters.theory_constants);
     let mut warnings = constants.warnings(theories);
@@ -336,6 +340,7 @@ struct Value {
     friction_coefficient: f64,
     interpolation_error: f64,
     discretisation_error: Option<f64>,
+    left_out_error: f64,
 }
 
 impl From<CurveRow> for Value {
@@ -349,6 +354,7 @@ impl From<CurveRow> for Value {
             friction_coefficient: row.friction_coefficient,
             interpolation_error: row.interpolation_error,
             discretisation_error: row.discretisation_error,
+            left_out_error: row.left_out_error,
         }
     }
 }
@@ -363,7 +369,8 @@ impl From<FemCurveRow> for Value {
             pressure_mpa: row.pressure_mpa,
             friction_coefficient: row.friction_coefficient,
             interpolation_error: row.interpolation_error,
-            discretisation_error: None,
+            discretisation_error: row.discretisation_error,
+            left_out_error: 0.0,
         }
     }
 }
@@ -377,24 +384,27 @@ fn value_of(row: &HybridRow) -> Option<Value> {
         pressure_mpa: row.pressure_mpa,
         friction_coefficient: row.friction_coefficient?,
         interpolation_error: row.interpolation_error,
-        discretisation_error: None,
+        discretisation_error: row.discretisation_error,
+        left_out_error: row.left_out_error,
     })
 }
 
-/// The number of realisations of a run.
-fn realisations(bem: &[Value]) -> usize {
-    bem.iter().map(|value| value.realisation as usize).max().unwrap_or(0)
+/// The values at areas for which every realisation of the half-space has one: an average over some of
+/// them would be one over the less pressed ones.
+fn complete(values: Vec<Value>, half_space: &[Value]) -> Vec<Value> {
+    let counts = |values: &[Value]| {
+        let mut counts = BTreeMap::new();
+        values.iter().for_each(|value| *counts.entry(key(value)).or_insert(0) += 1);
+        counts
+    };
+    let (present, wanted): (BTreeMap<_, u32>, _) = (counts(&values), counts(half_space));
+    let full = |value: &Value| Some(&present[&key(value)]) == wanted.get(&key(value));
+    values.into_iter().filter(full).collect()
 }
 
-/// The values at areas for which every realisation has one: an average over some of them would be
-/// one over the less pressed ones.
-fn complete(values: Vec<Value>, realisations: usize) -> Vec<Value> {
-    let key = |value: &Value| {
-        (value.waves, value.speed_mm_s.to_bits(), value.contact_area_fraction.to_bits())
-    };
-    let mut counts = std::collections::BTreeMap::new();
-    values.iter().for_each(|value| *counts.entry(key(value)).or_insert(0) += 1);
-    values.into_iter().filter(|value| counts[&key(value)] == realisations).collect()
+/// What the values of one average have in common.
+fn key(value: &Value) -> (u32, u64, u64) {
+    (value.waves, value.speed_mm_s.to_bits(), value.contact_area_fraction.to_bits())
 }
 
 /// One row for each number of waves, speed and area, ascending.
@@ -414,13 +424,16 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
     let estimate = MeanEstimate::of(&realisations);
     let present = |value: f64| value.is_finite().then_some(value);
     let first = &curves[0];
-    let largest = |error: fn(&Value) -> Option<f64>| {
-        curves.iter().map(error).try_fold(0.0_f64, |most, error| Some(most.max(error?)))
-    };
-    let interpolation_error = curves.iter().map(|c| c.interpolation_error).fold(0.0, f64::max);
-    let discretisation_error = largest(|curve| curve.discretisation_error);
+    let count = curves.len() as f64;
+    let mean = |error: fn(&Value) -> f64| curves.iter().map(error).sum::<f64>() / count;
+    let discretisation_error = curves
+        .iter()
+        .map(|curve| curve.discretisation_error)
+        .try_fold(0.0, |sum, error| Some(sum + error? / count));
+    let interpolation_error = mean(|curve| curve.interpolation_error);
+    let left_out_error = mean(|curve| curve.left_out_error);
     let statistical_error = present(estimate.confidence_95);
-    let solved = discretisation_error.map(|error| error + interpolation_error);
+    let solved = discretisation_error.map(|error| error + interpolation_error + left_out_error);
     FrictionRow {
         model: model.into(),
         waves: first.waves,
@@ -432,10 +445,11 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
         confidence_95: statistical_error,
         interpolation_error,
         discretisation_error,
+        left_out_error,
         error_estimate: solved
             .zip(statistical_error)
             .map(|(solved, statistical)| solved + statistical),
-        pressure_mpa: curves.iter().map(|c| c.pressure_mpa).sum::<f64>() / curves.len() as f64,
+        pressure_mpa: mean(|curve| curve.pressure_mpa),
         shortest_reliable_wavelength_mm: None,
     }
 }
@@ -454,13 +468,15 @@ mod tests {
             friction_coefficient: friction,
             interpolation_error: friction / 1e3,
             discretisation_error: (realisation < 9).then_some(friction / 2e3),
+            left_out_error: 0.0,
         }
     }
 
     #[test]
     fn an_average_needs_every_realisation() {
         let values = vec![curve(8, 1, 0.05, 1.0), curve(8, 2, 0.05, 2.0), curve(8, 1, 0.1, 1.0)];
-        let complete = complete(values, 2);
+        let half_space = [values.clone(), vec![curve(8, 2, 0.1, 1.0)]].concat();
+        let complete = complete(values, &half_space);
         assert_eq!(complete.len(), 2);
         assert!(complete.iter().all(|value| value.contact_area_fraction == 0.05));
     }
@@ -479,14 +495,14 @@ mod tests {
         );
         assert_eq!(rows.len(), 3);
         assert_eq!(rows[0].realisations, [1.5, 2.5]);
-        assert_eq!((rows[1].mean, rows[1].interpolation_error), (2.0, 3e-3));
+        assert_eq!((rows[1].mean, rows[1].interpolation_error), (2.0, 2e-3));
         // t(0.975, 1) = 12.7062 in every table.
         let expected = 12.7062 * 2.0_f64.sqrt() / 2.0_f64.sqrt();
         approx::assert_relative_eq!(rows[1].confidence_95.unwrap(), expected, max_relative = 1e-5);
-        // Largest of grid 1.5e-3, largest of interpolation 3e-3, statistics.
+        // Means of grid 1e-3 and of interpolation 2e-3, statistics.
         approx::assert_relative_eq!(
             rows[1].error_estimate.unwrap(),
-            4.5e-3 + rows[1].confidence_95.unwrap(),
+            3e-3 + rows[1].confidence_95.unwrap(),
             max_relative = 1e-12
         );
         assert_eq!((rows[2].waves, rows[2].confidence_95), (9, None));

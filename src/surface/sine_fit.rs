@@ -255,9 +255,11 @@ fn report(
     for (k, &i) in active.iter().enumerate() {
         let amplitude = relative[k].abs() * start[i];
         let terms = directions.column(k).component_div(singular);
-        let growth = if condition_number < SINGULAR { terms.norm() } else { f64::INFINITY };
+        // Not by an infinite factor: the spread of a fit without residual is zero.
+        let determined = condition_number < SINGULAR;
+        let half_width = if determined { amplitude * spread * terms.norm() } else { f64::INFINITY };
         scales[i].scale.amplitude = amplitude;
-        scales[i].confidence_95 = Some(amplitude * spread * growth);
+        scales[i].confidence_95 = Some(half_width);
     }
     SineFit {
         scales,

@@ -7,7 +7,8 @@ use asperity::numerics::statistics::MeanEstimate;
 use asperity::recipe::Recipe;
 use asperity::rubber::read_rubber;
 use asperity::stages::bem::{
-    CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, SOLVES_FILE, SolveRow,
+    CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, REALISATIONS_FILE,
+    RealisationsRow, SOLVES_FILE, SolveRow,
 };
 use asperity::stages::realise::{Surface, read_surfaces};
 use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
@@ -147,6 +148,7 @@ fn fields_are_kept_at_the_wanted_areas() {
 fn a_wanted_accuracy_refines_the_grids_and_is_kept() {
     let campaign = Campaign::new();
     campaign.edit("recipe.toml", "tolerance = 5e-3\npoints_per_shortest_wavelength = 16", "");
+    campaign.edit("recipe.toml", "realisations = 2", "most_realisations = 2");
     let text = campaign.read("recipe.toml");
     let wanted = |tolerance: f64| {
         campaign.write("recipe.toml", &format!("tolerance = {tolerance}\n{text}"));
@@ -183,6 +185,95 @@ fn a_wanted_accuracy_refines_the_grids_and_is_kept() {
     let fine = RunView::of(campaign.path("out_0.002"));
     let warnings = fine.stage_manifest("tables").unwrap().unwrap().warnings;
     assert!(warnings.iter().any(|w| w.contains("exceeds the tolerance 0.002")), "{warnings:?}");
+}
+
+/// Waves of 0.25 to 8 mm, the longest of next to no height and the shortest so low that it is pressed flat.
+const SIX_WAVES: &str = r#"
+        title = "Six given waves"
+        TOLERANCE
+        [[approximate.given]]
+        source = "a test"
+        scales = [
+            { wavelength_mm = 0.25, amplitude_mm = 0.00001 },
+            { wavelength_mm = 0.5, amplitude_mm = 0.01 },
+            { wavelength_mm = 1.0, amplitude_mm = 0.02 },
+            { wavelength_mm = 2.0, amplitude_mm = 0.03 },
+            { wavelength_mm = 4.0, amplitude_mm = 0.04 },
+            { wavelength_mm = 8.0, amplitude_mm = 0.0005 },
+        ]
+        [realise]
+        waves = [6]
+        REALISATIONS
+        seed = 5
+        [bem]
+        rubber = "rubber.toml"
+        speeds_mm_s = [1.0, 100.0]
+        area_fractions = [0.05, 0.1]
+"#;
+
+#[test]
+fn as_many_realisations_are_solved_as_the_average_needs_without_the_waves_that_do_not_matter() {
+    let campaign = Campaign::new();
+    let wanted = |tolerance: &str, realisations: &str| {
+        let text = SIX_WAVES.replace("TOLERANCE", tolerance).replace("REALISATIONS", realisations);
+        campaign.write("recipe.toml", &text);
+        let out = campaign.path(&format!("out{}", realisations.len()));
+        run(&recipe(&campaign), &out);
+        let view = RunView::of(out);
+        let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+        let (counts, _) = view.read_table::<RealisationsRow>("bem", REALISATIONS_FILE).unwrap();
+        (rows, counts, view)
+    };
+    let (rows, counts, view) = wanted("tolerance = 0.05", "");
+    for row in &rows {
+        let error = row.error_estimate.unwrap();
+        assert!(error <= 0.05 * row.mean, "{row:?}");
+        // No more than they have to be: the last extension asked for a tenth more at least.
+        assert!(row.realisations.len() < 1000);
+    }
+    for count in &counts {
+        assert_eq!(count.with_all_waves, 8, "{count:?}");
+        assert_eq!(count.left_out_wavelengths_mm, [0.25, 8.0], "{count:?}");
+        assert!(count.realisations > 24, "{count:?}");
+        let of = |row: &&FrictionRow| row.speed_mm_s == count.speed_mm_s;
+        for row in rows.iter().filter(of) {
+            assert_eq!(row.realisations.len(), count.realisations as usize);
+        }
+    }
+    // The last realisations once more, with all waves: the change of the mean is within its bound.
+    let count = counts.iter().map(|count| count.realisations).min().unwrap();
+    let (all, _, full) = wanted("", &format!("realisations = {count}"));
+    let (reduced_curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let (full_curves, _) = full.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    for row in &all {
+        let mean = |curves: &[CurveRow]| {
+            let of = |c: &&CurveRow| {
+                (c.speed_mm_s, c.contact_area_fraction)
+                    == (row.speed_mm_s, row.contact_area_fraction)
+                    && c.realisation > 8
+                    && c.realisation <= count
+            };
+            let of: Vec<&CurveRow> = curves.iter().filter(of).collect();
+            let error: f64 = of.iter().map(|c| c.left_out_error + c.interpolation_error).sum();
+            let grid: f64 = of.iter().map(|c| c.discretisation_error.unwrap()).sum();
+            let friction: f64 = of.iter().map(|c| c.friction_coefficient).sum();
+            (friction / of.len() as f64, (error + grid) / of.len() as f64)
+        };
+        let ((reduced, bound), (full, own)) = (mean(&reduced_curves), mean(&full_curves));
+        assert!((reduced - full).abs() <= bound + own, "{reduced} {full} {bound} {own} {row:?}");
+        assert!((reduced - full).abs() > 0.0);
+    }
+}
+
+#[test]
+fn a_limit_of_realisations_without_an_accuracy_is_refused_and_so_is_no_number_at_all() {
+    let campaign = Campaign::new();
+    campaign.edit("recipe.toml", "realisations = 2", "most_realisations = 20");
+    let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
+    assert!(message.contains("realise.most_realisations = 20"), "{message}");
+    campaign.edit("recipe.toml", "most_realisations = 20", "");
+    let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
+    assert!(message.contains("realise.realisations = 0, wanted: a number"), "{message}");
 }
 
 #[test]

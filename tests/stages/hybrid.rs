@@ -287,3 +287,43 @@ fn nothing_to_correct_with_is_an_error_that_says_what_to_do() {
         "{error}"
     );
 }
+
+#[test]
+fn an_accuracy_brings_the_errors_by_the_mesh_into_the_tables() {
+    let fem = "[fem]\ncolumns_per_shortest_wavelength = 32\npressure_ratio = 1.5";
+    let campaign = campaign(0.016, fem);
+    campaign.edit(
+        "recipe.toml",
+        "area_fractions = [0.03, 0.06]\n            tolerance = 1e-3",
+        "area_fractions = [0.03, 0.06]",
+    );
+    campaign.edit("recipe.toml", "realisations = 2", "most_realisations = 2");
+    let text = campaign.read("recipe.toml");
+    campaign.write("recipe.toml", &format!("tolerance = 0.2\n{text}"));
+    let (recipe, view) = solved(&campaign);
+    let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
+    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    // Three times as many columns have a ninth of the error.
+    let wave = Wave { wavelength: 6.25e-5, amplitude: 1.6e-5, phase: 0.0 };
+    let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
+    let options = BlockOptions::new(3 * COLUMNS);
+    let mut finer =
+        SteadyContact::new(&rubber, Rheology::NeoHookean, 0.02, profile, options).unwrap();
+    let mut covered = 0;
+    for sample in &samples {
+        let fine = finer.solve(sample.pressure_mpa * 1e6).unwrap().friction_coefficient;
+        let change = (fine - sample.friction_finite_deformation).abs();
+        let error = sample.discretisation_error.unwrap();
+        assert!(change <= 2.0 * error, "{change} {sample:?}");
+        covered += usize::from(change <= error);
+    }
+    assert!(10 * covered >= 9 * samples.len(), "{covered} of {}", samples.len());
+    let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    for row in &rows {
+        assert_ne!(row.discretisation_error.unwrap(), 0.0, "{row:?}");
+        assert!(row.error_estimate.unwrap() > row.confidence_95.unwrap(), "{row:?}");
+    }
+    let of = |model: &str| rows.iter().filter(|row| row.model == model).count();
+    assert_eq!((of("bem"), of("hybrid")), (2, 2));
+    assert!(of("fem") > 0);
+}

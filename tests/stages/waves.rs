@@ -143,7 +143,8 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     commit(&folder, "approximate", |c| approximate::run(&parameters(0.25, &[3, 4]), &folder, c))
         .unwrap();
     let realised = |seed| -> Vec<Surface> {
-        let parameters = Realise { waves: vec![3, 4], realisations: 5, seed };
+        let parameters =
+            Realise { waves: vec![3, 4], realisations: Some(5), most_realisations: None, seed };
         commit(&folder, "realise", |c| realise::run(&parameters, &folder, c)).unwrap();
         read_surfaces(&folder).unwrap()
     };

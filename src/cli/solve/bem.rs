@@ -42,6 +42,8 @@ Examples:
     asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3 --tolerance 1e-5
   The pressure that brings 5 % of the area into contact:
     asperity solve bem --wave 0.0625:0.01867 --speed 10 --area 0.05
+  The same rubber at another temperature than that of its moduli:
+    asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3 --rubber tread.toml --temperature-c 40
   A measured profile with x and z in micrometres on an elastic half-space:
     asperity solve bem --profile road.txt --profile-unit um --modulus 4.17 --poisson 0.49 --speed 10 --pressure 0.2
 
@@ -98,14 +100,18 @@ struct Summary {
 
 impl Bem {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
-        let rubber = self.material.rubber()?;
+        let material = self.material.material()?;
+        let rubber = material.rubber();
         let shape = self.shape.build()?;
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
+        for warning in material.warnings(&shape, self.speed / 1e3) {
+            note(quiet, format_args!("warning: {warning}"));
+        }
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;
         let start = Instant::now();
-        let refined = self.solve(&rubber, &shape)?;
+        let refined = self.solve(rubber, &shape)?;
         let solution = &refined.solution;
         let summary = Summary::new(&refined, start.elapsed().as_secs_f64());
         summary.check()?;

@@ -138,9 +138,13 @@ impl From<Rule> for FlowRule {
 impl Fem {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         self.check()?;
-        let rubber = self.material.rubber_at_finite_deformation()?;
+        let material = self.material.material_at_finite_deformation()?;
+        let rubber = material.rubber();
         let shape = self.shape.build()?;
         if let Some(warning) = &shape.warning {
+            note(quiet, format_args!("warning: {warning}"));
+        }
+        for warning in material.warnings(&shape, self.speed / 1e3) {
             note(quiet, format_args!("warning: {warning}"));
         }
         let profile = rigid_profile(&shape);
@@ -149,8 +153,8 @@ impl Fem {
             note(quiet, format_args!("warning: {warning}"));
         }
         let summary = match self.route {
-            Route::Steady => self.steady(&rubber, profile, options, quiet)?,
-            Route::Transient => self.transient(&rubber, profile, &shape, options, quiet)?,
+            Route::Steady => self.steady(rubber, profile, options, quiet)?,
+            Route::Transient => self.transient(rubber, profile, &shape, options, quiet)?,
         };
         print(&if self.json { json(&summary)? } else { summary.table() })
     }

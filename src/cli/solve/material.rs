@@ -4,8 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::shape::Shape;
 use crate::cli::{CliError, values};
-use crate::rubber::{FiniteStrainRubber, Rheology, Rubber, read_rubber};
+use crate::rubber::{
+    FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
+};
 
 /// The rubber.
 #[derive(Debug, Args)]
@@ -13,6 +16,10 @@ pub(super) struct MaterialOptions {
     /// Rubber as a TOML file, see data/rubber [default: Table 2.1 of the thesis].
     #[arg(long, value_name = "FILE", conflicts_with_all = ["modulus", "poisson"])]
     rubber: Option<PathBuf>,
+    /// Temperature in °C; --rubber then needs a [temperature] section, see `asperity rubber fit`
+    /// [default: that of the moduli in the file].
+    #[arg(long, value_name = "C", requires = "rubber", conflicts_with_all = ["modulus", "poisson"], value_parser = values::finite, allow_negative_numbers = true)]
+    temperature_c: Option<f64>,
     /// Young's modulus in MPa of an elastic half-space in place of a rubber; with --poisson.
     #[arg(long, value_name = "MPA", requires = "poisson", value_parser = values::positive, allow_negative_numbers = true)]
     modulus: Option<f64>,
@@ -21,31 +28,58 @@ pub(super) struct MaterialOptions {
     poisson: Option<f64>,
 }
 
+/// The rubber at its temperature.
+pub(super) struct Material(RubberData);
+
 impl MaterialOptions {
-    pub(super) fn rubber(&self) -> Result<Rubber, CliError> {
-        match (&self.rubber, self.modulus, self.poisson) {
-            (Some(path), _, _) => read_rubber(path).map_err(CliError::input),
+    pub(super) fn material(&self) -> Result<Material, CliError> {
+        let data = match (&self.rubber, self.modulus, self.poisson) {
+            (Some(path), _, _) => read_rubber_data(path).map_err(CliError::input)?,
             (None, Some(modulus_mpa), Some(poisson_ratio)) => {
-                Ok(Rubber::elastic(modulus_mpa * 1e6, poisson_ratio))
+                Rubber::elastic(modulus_mpa * 1e6, poisson_ratio).into()
             }
-            _ => Ok(Rubber::table_2_1()),
-        }
+            _ => Rubber::table_2_1().into(),
+        };
+        let data = match self.temperature_c {
+            None => data,
+            Some(temperature_c) => {
+                data.at_temperature(temperature_c).map_err(|error| self.named(error))?
+            }
+        };
+        Ok(Material(data))
     }
 
     /// The rubber, if it can be had at finite deformation.
-    pub(super) fn rubber_at_finite_deformation(&self) -> Result<Rubber, CliError> {
-        let rubber = self.rubber()?;
-        match (FiniteStrainRubber::new(&rubber, Rheology::NeoHookean), &self.rubber) {
-            (Ok(_), _) => Ok(rubber),
-            (Err(error), None) => Err(CliError::input(error)),
-            (Err(error), Some(path)) => {
-                Err(CliError::input(format!("{}: {error}", path.display())))
-            }
+    pub(super) fn material_at_finite_deformation(&self) -> Result<Material, CliError> {
+        let material = self.material()?;
+        match FiniteStrainRubber::new(material.rubber(), Rheology::NeoHookean) {
+            Ok(_) => Ok(material),
+            Err(error) => Err(self.named(error)),
+        }
+    }
+
+    /// The error with the file of the rubber, if it has one.
+    fn named(&self, error: impl std::error::Error + Send + Sync + 'static) -> CliError {
+        match &self.rubber {
+            None => CliError::input(error),
+            Some(path) => CliError::input(format!("{}: {error}", path.display())),
         }
     }
 
     /// The file of the rubber, if it has one.
     pub(super) fn file(&self) -> Option<&Path> {
         self.rubber.as_deref()
+    }
+}
+
+impl Material {
+    pub(super) fn rubber(&self) -> &Rubber {
+        &self.0.rubber
+    }
+
+    /// What is extrapolated from the measurement of the rubber: the shift to its temperature, the
+    /// frequencies that the profile excites at a speed in m/s.
+    pub(super) fn warnings(&self, shape: &Shape, speed: f64) -> Vec<String> {
+        self.0.extrapolations(FrequencyRange::excited(shape.excited_wavelengths(), [speed]))
     }
 }

@@ -7,6 +7,7 @@ use clap::{ArgGroup, Args};
 use super::profile_file::read_profile;
 use crate::cli::{CliError, values};
 use crate::contact::sliding::{POINTS_RANGE, resample};
+use crate::fem::profile::RigidProfile;
 use crate::scans::description::LengthUnit;
 use crate::surface::{Wave, wave};
 
@@ -69,6 +70,17 @@ impl Shape {
         } else {
             wave::sample(&self.waves, self.period, points)
         }
+    }
+
+    /// Wavelengths in m of the sines with an amplitude; of a profile its period and the shortest wave
+    /// that matters for its slope.
+    pub(super) fn excited_wavelengths(&self) -> Vec<f64> {
+        if self.waves.is_empty() {
+            let waves = RigidProfile::from_heights(&self.heights, self.period).shortest_waves();
+            return vec![self.period, self.period / waves];
+        }
+        let present = self.waves.iter().filter(|wave| wave.amplitude != 0.0);
+        present.map(|wave| wave.wavelength).collect()
     }
 
     /// Number of the shortest waves in the period; none for a profile.

@@ -3,7 +3,9 @@
 use super::{Bem, SolveRow};
 use crate::artifact::{ArrayDataset, Attribute, Digest, SolveStore};
 use crate::contact::curve::{CurveError, friction_curve};
-use crate::contact::refine::{OnGrid, RefineError, Refinement, Watched, on_grid};
+use crate::contact::refine::{
+    GridError, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refinement, Watched, on_grid,
+};
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
 use crate::rubber::Rubber;
@@ -18,7 +20,7 @@ use std::time::Instant;
 
 /// Revision of the contact solver: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 3;
+const SOLVER_REVISION: u32 = 4;
 
 /// Of the coarsest grid where an accuracy is asked for; three grids make an estimate.
 const FIRST_POINTS_PER_WAVE: u32 = 8;
@@ -90,7 +92,13 @@ impl<'a> Curve<'a> {
         &mut self,
         parameters: &Bem,
     ) -> Result<(Vec<CurveValue>, Vec<FieldSolution>), CurveError<SolveError>> {
-        let guess = self.first_guess(parameters.area_fractions[0]);
+        let smallest = parameters.area_fractions[0];
+        let finest = self.base_points << MOST_REFINEMENTS;
+        if self.grid_tolerance.is_none() && smallest * (finest as f64) < LEAST_CONTACT_POINTS {
+            let unresolved = SolveError::Unresolved { area: smallest, points: finest };
+            return Err(CurveError::Solve(unresolved));
+        }
+        let guess = self.first_guess(smallest);
         let curve = |targets: &[f64], this: &mut Self| {
             friction_curve(targets, parameters.interpolation_tolerance(), guess, |p| this.point(p))
         };
@@ -131,7 +139,7 @@ impl<'a> Curve<'a> {
             Some(tolerance) => {
                 let refinement = Refinement {
                     tolerance,
-                    watched: Watched::Friction,
+                    watched: Watched::FrictionOverArea,
                     first: self.first_points,
                     most: MOST_POINTS,
                 };
@@ -149,8 +157,8 @@ impl<'a> Curve<'a> {
                 on_grid(points, least, |points| self.solve(pressure, points), on_its_grid)?
             }
         };
-        let error = refined.error.map(|error| error.friction_coefficient);
-        Ok(self.keep(SolveRow { discretisation_error: error, ..refined.solution }))
+        let discretisation_error = refined.error.map(|error| error.friction_coefficient);
+        Ok(self.keep(SolveRow { discretisation_error, ..refined.solution }, refined.error))
     }
 
     /// The usual grid, doubled while the contact has too few points.
@@ -166,12 +174,12 @@ impl<'a> Curve<'a> {
         Ok(points)
     }
 
-    fn keep(&mut self, row: SolveRow) -> CurvePoint {
+    fn keep(&mut self, row: SolveRow, error: Option<GridError>) -> CurvePoint {
         let point = CurvePoint {
             mean_pressure: row.pressure_mpa * 1e6,
             contact_area_fraction: row.contact_area_fraction,
             friction_coefficient: row.friction_coefficient,
-            discretisation_error: row.discretisation_error,
+            error,
         };
         self.solves.push(row);
         point

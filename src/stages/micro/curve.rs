@@ -5,7 +5,7 @@ use crate::artifact::{Digest, SolveStore};
 use crate::contact::{ContactSolution, SlidingContact};
 use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
-use crate::fem::steady::{BlockOptions, SteadyContact};
+use crate::fem::steady::{BlockOptions, COLUMNS_RANGE, SteadyContact};
 use crate::multiscale::sampling::{geometric, interpolation_errors, refinement};
 use crate::multiscale::{LawEnd, LocalLaw};
 use crate::rubber::{Rheology, Rubber};
@@ -150,6 +150,32 @@ impl<'a> MicroCurve<'a> {
         Ok((rows, warning))
     }
 
+    /// Writes the errors by the mesh into the rows, from the same pressures on half the columns.
+    ///
+    /// Friction converges with the square of the columns, so that the difference is three times the error;
+    /// where contact edges fall between nodes it is small by chance now and then, so the larger ones of the
+    /// neighbouring samples count too. Beyond the last solution on the coarser mesh there is none.
+    pub fn estimate_mesh_error(&self, rows: &mut [SampleRow]) -> Result<(), SolveError> {
+        let Self { parameters, rubber, task, store, interrupted, .. } = *self;
+        let mut coarser = Self::new(parameters, rubber, task, store, interrupted);
+        coarser.columns = (self.columns / 2).max(*COLUMNS_RANGE.start());
+        let mut differences = Vec::with_capacity(rows.len());
+        for row in rows.iter() {
+            match coarser.row(row.pressure_mpa * 1e6) {
+                Ok(coarse) => differences.push(
+                    (row.friction_finite_deformation - coarse.friction_finite_deformation).abs(),
+                ),
+                Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => break,
+                Err(error) => return Err(error),
+            }
+        }
+        for (k, row) in rows.iter_mut().enumerate().take(differences.len()) {
+            let about = k.saturating_sub(1)..differences.len().min(k + 2);
+            row.discretisation_error = differences[about].iter().copied().reduce(f64::max);
+        }
+        Ok(())
+    }
+
     /// The last point of a path that ended, if it is beyond the samples and is solved again.
     fn last_on_path(&mut self, error: &FemError, rows: &[SampleRow]) -> Option<SampleRow> {
         let FemError::PathEnded { reached: PathEnd::At { pressure, .. }, .. } = error else {
@@ -219,6 +245,7 @@ impl<'a> MicroCurve<'a> {
             separation_half_space_mm: half_space.mean_separation * 1e3,
             separation_finite_deformation_mm: block.mean_separation * 1e3,
             interpolation_error: 0.0,
+            discretisation_error: None,
             residual: block.residual,
             newton_steps: block.newton_steps as u64,
             seconds: start.elapsed().as_secs_f64(),

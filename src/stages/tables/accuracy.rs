@@ -1,10 +1,11 @@
 //! Whether the averages have the accuracy that the recipe asks for.
 
 use super::{BEM, FrictionRow};
+use crate::numerics::statistics::MeanEstimate;
 
 /// Says so where averages of the half-space miss the wanted relative accuracy, by how much and what
-/// would mend it. Grids and interpolation keep to half of it, so that it is the realisations that are
-/// too few; the error of a mean falls with the square root of their number.
+/// would mend it. All other errors keep to a part of it, so that it is the realisations that are too
+/// few: the recipe allows no more.
 pub(super) fn missed(tolerance: f64, rows: &[FrictionRow]) -> Option<String> {
     let relative = |row: &FrictionRow| row.error_estimate.map(|error| error / row.mean.abs());
     let half_space: Vec<&FrictionRow> = rows.iter().filter(|row| row.model == BEM).collect();
@@ -14,15 +15,14 @@ pub(super) fn missed(tolerance: f64, rows: &[FrictionRow]) -> Option<String> {
     if missing == 0 {
         return None;
     }
-    let realisations = worst.realisations.len() as f64;
+    let spread = MeanEstimate::of(&worst.realisations);
     let statistical = worst.confidence_95.unwrap_or(0.0) / worst.mean.abs();
     let left = tolerance - (most - statistical);
-    let advice = if left > 0.0 {
-        let needed = (realisations * (statistical / left).powi(2)).ceil();
-        format!("about {needed} realisations would reach it (realise.realisations)")
-    } else {
-        "raise the tolerance".into()
-    };
+    let advice = spread.count_for(left * worst.mean.abs()).map_or_else(
+        || "raise the tolerance".into(),
+        |needed| format!("about {needed} would do (realise.most_realisations)"),
+    );
+    let realisations = spread.count;
     Some(format!(
         "the error of {missing} of {} averages exceeds the tolerance {tolerance}: the largest is {:.1} % of the \
          friction, {:.1} % of it by only {realisations} realisations ({} waves, {} mm/s, area {}); {advice}",
@@ -47,10 +47,10 @@ mod tests {
         assert_eq!(missed(0.5, &rows), None);
         let warning = missed(0.01, &rows).unwrap();
         // Mean 1.025, 95 % of four: 3.182 * 0.01291 / 2 = 0.02054, 2.00 %; grid and interpolation
-        // 0.15 %; 4 * (2.004 / 0.85)^2 = 22.3.
+        // 0.15 %, so 0.0087 is left: t(11) 0.01291 / sqrt(12) = 0.0082, t(10) 0.01291 / sqrt(11) = 0.0087.
         assert!(warning.contains("1 of 1 averages"), "{warning}");
         assert!(warning.contains("2.2 % of the friction, 2.0 % of it by only 4"), "{warning}");
-        assert!(warning.contains("about 23 realisations"), "{warning}");
+        assert!(warning.contains("about 11 would do"), "{warning}");
         assert!(missed(0.001, &rows).unwrap().contains("raise the tolerance"));
     }
 }

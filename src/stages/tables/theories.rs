@@ -120,6 +120,7 @@ impl From<&TheoryRow> for Value {
             friction_coefficient: row.friction_coefficient,
             interpolation_error: 0.0,
             discretisation_error: None,
+            left_out_error: 0.0,
         }
     }
 }

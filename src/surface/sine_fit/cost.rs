@@ -11,6 +11,9 @@ use std::f64::consts::LN_10;
 /// Gradient norm at which the trust region hands over to Newton's method.
 const NEWTON_BASIN: f64 = 1e-7;
 
+/// Halvings of a Newton step before it counts as round-off.
+const MOST_HALVINGS: i32 = 10;
+
 /// More than ten times what any fit in the tests takes.
 const MAXIMUM_ITERATIONS: u64 = 1000;
 
@@ -169,6 +172,10 @@ pub(super) fn minimise(cost: &LogarithmicCost, start: DVector<f64>) -> Minimum {
 
 /// Newton steps for as long as the gradient falls; returns the last point and its gradient norm.
 /// Directions in which the cost does not change are left alone.
+///
+/// A step that makes the gradient grow is halved: waves that are hard to tell apart leave a valley
+/// so flat along its bottom that a whole step leaves the reach of the quadratic model, but along a
+/// Newton step the gradient falls at first.
 fn newton(
     cost: &LogarithmicCost,
     mut amplitudes: DVector<f64>,
@@ -178,12 +185,14 @@ fn newton(
         let svd = cost.hessian(&amplitudes)?.svd(true, true);
         let flat = 1e-12 * svd.singular_values.max();
         let step = svd.solve(&gradient, flat).map_err(Error::msg)?;
-        let next = &amplitudes - step;
-        let next_gradient = cost.gradient(&next)?;
-        let falls = next_gradient.norm() < gradient.norm();
-        if !falls {
+        let mut shortened = (0..=MOST_HALVINGS).filter_map(|halvings| {
+            let next = &amplitudes - &step * 0.5_f64.powi(halvings);
+            let next_gradient = cost.gradient(&next).ok()?;
+            (next_gradient.norm() < gradient.norm()).then_some((next, next_gradient))
+        });
+        let Some(better) = shortened.next() else {
             return Ok((amplitudes, gradient.norm()));
-        }
-        (amplitudes, gradient) = (next, next_gradient);
+        };
+        (amplitudes, gradient) = better;
     }
 }

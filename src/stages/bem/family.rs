@@ -1,0 +1,158 @@
+//! The curves of one approximation at one speed, of as many realisations as their average needs.
+
+use super::reduction::LeftOut;
+use super::{CurveRow, FieldSolution, SolveRow};
+use crate::contact::refine::LEAST_FRICTION;
+use crate::numerics::statistics::MeanEstimate;
+use crate::stages::realise::Surface;
+
+/// Realisations from whose spread the number that is needed is judged first.
+pub(crate) const FIRST_REALISATIONS: usize = 8;
+/// Their number is at most multiplied by this at once: it follows from a spread that is not well known yet.
+const MOST_GROWTH: usize = 4;
+/// And grows by this share at least, so that the last few do not come one by one.
+const LEAST_GROWTH: f64 = 0.1;
+
+/// The solves, the curve and the fields of one surface at one speed.
+pub(super) struct CurveResult {
+    pub solves: Vec<SolveRow>,
+    pub values: Vec<CurveRow>,
+    pub fields: Vec<FieldSolution>,
+}
+
+/// One approximation at one speed.
+pub(super) struct Family<'a> {
+    pub speed_mm_s: f64,
+    /// All its surfaces.
+    pub surfaces: &'a [Surface],
+    /// The curves of the first of them.
+    pub results: Vec<CurveResult>,
+    /// Number of curves that are wanted.
+    pub wanted: usize,
+    /// Of these with all waves.
+    pub with_all_waves: usize,
+    /// What the others do without.
+    pub left_out: LeftOut,
+}
+
+impl<'a> Family<'a> {
+    /// All realisations of the surfaces, or the first ones if an accuracy of the average is asked for.
+    pub fn new(surfaces: &'a [Surface], speed_mm_s: f64, tolerance: Option<f64>) -> Self {
+        let all = surfaces.len();
+        let wanted = if tolerance.is_some() { all.min(FIRST_REALISATIONS) } else { all };
+        let left_out = LeftOut::default();
+        Self { speed_mm_s, surfaces, results: Vec::new(), wanted, with_all_waves: all, left_out }
+    }
+
+    /// The surfaces whose curves are wanted and not solved.
+    pub fn open(&self) -> &'a [Surface] {
+        &self.surfaces[self.results.len()..self.wanted]
+    }
+
+    /// The wanted number from the curves so far; it stays if they will do or if there are no more.
+    pub fn extend(&mut self, tolerance: f64) {
+        let solved = self.results.len();
+        let curves: Vec<&[CurveRow]> =
+            self.results.iter().map(|result| &result.values[..]).collect();
+        let needed = realisations_needed(&curves, tolerance).unwrap_or(solved);
+        if needed > solved {
+            let least = solved + (LEAST_GROWTH * solved as f64).ceil() as usize;
+            self.wanted = needed.max(least).min(MOST_GROWTH * solved).min(self.surfaces.len());
+        }
+    }
+}
+
+/// Number of realisations for which the statistical error of the average, half the width of its 95 %
+/// interval, fits at every area into what the other errors leave of the relative `tolerance`. `curves` are
+/// those of the realisations so far, each at the same areas. None where it cannot be told: of one
+/// curve, or if the other errors leave nothing.
+pub(crate) fn realisations_needed(curves: &[&[CurveRow]], tolerance: f64) -> Option<usize> {
+    let areas = curves.first().map_or(0, |curve| curve.len());
+    let at_area = |k: usize| {
+        let friction: Vec<f64> = curves.iter().map(|curve| curve[k].friction_coefficient).collect();
+        let estimate = MeanEstimate::of(&friction);
+        let error = |row: &CurveRow| {
+            row.interpolation_error + row.discretisation_error.unwrap_or(0.0) + row.left_out_error
+        };
+        let others = curves.iter().map(|curve| error(&curve[k])).sum::<f64>() / curves.len() as f64;
+        estimate.count_for(tolerance * estimate.mean.abs().max(LEAST_FRICTION) - others)
+    };
+    let counts: Option<Vec<usize>> = (0..areas).map(at_area).collect();
+    counts?.into_iter().max()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::SineScale;
+    use crate::surface::realisation::random_phases;
+    use std::f64::consts::TAU;
+
+    fn row(friction_coefficient: f64, interpolation_error: f64) -> CurveRow {
+        CurveRow {
+            waves: 1,
+            realisation: 1,
+            speed_mm_s: 1.0,
+            contact_area_fraction: 0.1,
+            pressure_mpa: 1.0,
+            friction_coefficient,
+            interpolation_error,
+            discretisation_error: None,
+            left_out_error: 0.0,
+        }
+    }
+
+    fn needed(friction: &[f64], error: f64, tolerance: f64) -> Option<usize> {
+        let curves: Vec<[CurveRow; 1]> = friction.iter().map(|f| [row(*f, error)]).collect();
+        let curves: Vec<&[CurveRow]> = curves.iter().map(|curve| &curve[..]).collect();
+        realisations_needed(&curves, tolerance)
+    }
+
+    #[test]
+    fn the_number_follows_from_the_spread_and_what_is_left_of_the_tolerance() {
+        let friction = [0.9, 1.0, 1.1, 1.0];
+        let spread = MeanEstimate::of(&friction);
+        assert_eq!(needed(&friction, 0.0, 0.05), spread.count_for(0.05));
+        assert_eq!(needed(&friction, 0.03, 0.05), spread.count_for(0.02));
+        assert_eq!(needed(&friction, 0.05, 0.05), None);
+        assert_eq!(needed(&friction[..1], 0.0, 0.05), None);
+    }
+
+    /// 95 of 100 intervals hold the true mean where the number is given beforehand. Here it follows
+    /// from the same sample, which stops early when its spread is small by chance: a few less.
+    #[test]
+    fn averages_that_stop_when_they_are_good_enough_still_hold_the_mean() {
+        let (mut inside, families) = (0, 400);
+        for seed in 0..families {
+            // Skewed, with a mean of 2/3 and a spread of 0.9 times that; of phase differences, which
+            // friction depends on.
+            let friction = |k: usize| {
+                let scales = [SineScale { wavelength: 1.0, amplitude: 1.0 }; 2];
+                let waves = random_phases(&scales, seed, k as u64);
+                2.0 * ((waves[1].phase - waves[0].phase) / TAU).rem_euclid(1.0).powi(2)
+            };
+            let mut count = FIRST_REALISATIONS;
+            let surface = Surface { waves: 1, realisation: 1, profile: Vec::new() };
+            let surfaces = vec![surface; 5000];
+            let mut family = Family::new(&surfaces, 1.0, Some(0.1));
+            loop {
+                for k in family.results.len()..count {
+                    let values = vec![row(friction(k), 0.0)];
+                    family.results.push(CurveResult { solves: vec![], values, fields: vec![] });
+                }
+                family.extend(0.1);
+                if family.wanted == count {
+                    break;
+                }
+                assert!(family.wanted > count && family.wanted <= MOST_GROWTH * count);
+                count = family.wanted;
+            }
+            let values: Vec<f64> = (0..count).map(friction).collect();
+            let estimate = MeanEstimate::of(&values);
+            assert!(estimate.confidence_95 <= 0.1 * estimate.mean);
+            inside += usize::from((estimate.mean - 2.0 / 3.0).abs() <= estimate.confidence_95);
+        }
+        let share = inside as f64 / families as f64;
+        assert!(share >= 0.92, "{share}");
+    }
+}

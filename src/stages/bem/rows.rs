@@ -1,0 +1,170 @@
+//! What the stage writes.
+
+use crate::artifact::{ArraysSchema, AttributeSchema, DatasetSchema, Row, SchemaVersion};
+use crate::stages::schema_of;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// All solves, of the waves that were not left out: `solves.arrow`.
+pub const SOLVES_FILE: &str = "solves.arrow";
+/// Friction at the wanted contact areas: `curves.arrow`.
+pub const CURVES_FILE: &str = "curves.arrow";
+/// Pressure and separation on request: `fields.h5`.
+pub const FIELDS_FILE: &str = "fields.h5";
+/// Schema name of [`FIELDS_FILE`].
+pub const FIELDS_SCHEMA: &str = "asperity.bem.fields";
+/// Schema version of [`FIELDS_FILE`].
+pub const FIELDS_VERSION: u32 = 1;
+pub(super) const FIELDS_DESCRIPTION: &str =
+    "pressure and separation over one period of the profile";
+
+/// One solved contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SolveRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Mean pressure.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_coefficient: f64,
+    /// Friction coefficient from the hysteretic power of the pressure spectrum; the difference to
+    /// the friction coefficient measures the grid.
+    #[schemars(extend("unit" = "1"))]
+    pub hysteretic_friction: f64,
+    /// Contact area fraction.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Mean separation.
+    #[schemars(extend("unit" = "mm"))]
+    pub mean_separation_mm: f64,
+    /// Estimated error of the friction coefficient by the grid, absolute; absent where coarser grids
+    /// do not resolve the contact.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
+    /// Residual of the contact conditions, relative.
+    #[schemars(extend("unit" = "1"))]
+    pub residual: f64,
+    /// Active-set iterations on the finest grid.
+    pub iterations: u64,
+    /// Grid points.
+    pub grid_points: u64,
+    /// Wall time of the solve.
+    #[schemars(extend("unit" = "s", "volatile" = true))]
+    pub seconds: f64,
+}
+
+impl Row for SolveRow {
+    const SCHEMA: &'static str = "asperity.bem.solves";
+    const VERSION: u32 = 2;
+}
+
+/// Friction of one realisation at one wanted contact area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CurveRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Contact area fraction.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: f64,
+    /// Mean pressure, interpolated.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: f64,
+    /// Friction coefficient, interpolated.
+    #[schemars(extend("unit" = "1"))]
+    pub friction_coefficient: f64,
+    /// Estimated error of the friction coefficient by interpolation, absolute.
+    #[schemars(extend("unit" = "1"))]
+    pub interpolation_error: f64,
+    /// The larger of the errors by the grid of the two solves that the friction lies between; absent
+    /// where one of them is not known.
+    #[schemars(extend("unit" = "1"))]
+    pub discretisation_error: Option<f64>,
+    /// Bound of the change of the mean friction by waves that were left out of this realisation; 0
+    /// where all are there.
+    #[schemars(extend("unit" = "1"))]
+    pub left_out_error: f64,
+}
+
+impl Row for CurveRow {
+    const SCHEMA: &'static str = "asperity.bem.curves";
+    const VERSION: u32 = 3;
+}
+
+/// How many realisations were solved, and of which waves: `realisations.arrow`.
+pub const REALISATIONS_FILE: &str = "realisations.arrow";
+
+/// What the average of one approximation at one speed rests on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RealisationsRow {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Realisations that were solved.
+    pub realisations: u32,
+    /// Of these with all waves.
+    pub with_all_waves: u32,
+    /// Wavelengths that the others do without.
+    #[schemars(extend("unit" = "mm"))]
+    pub left_out_wavelengths_mm: Vec<f64>,
+}
+
+impl Row for RealisationsRow {
+    const SCHEMA: &'static str = "asperity.bem.realisations";
+    const VERSION: u32 = 1;
+}
+
+/// Schemas of the results.
+pub fn schemas() -> Vec<SchemaVersion> {
+    let fields = SchemaVersion { schema: FIELDS_SCHEMA.into(), version: FIELDS_VERSION };
+    vec![schema_of::<SolveRow>(), schema_of::<CurveRow>(), schema_of::<RealisationsRow>(), fields]
+}
+
+/// What [`FIELDS_FILE`] holds.
+pub fn fields_schema() -> ArraysSchema {
+    let attribute = |name, description| AttributeSchema { name, kind: "f64", description };
+    let attributes = vec![
+        attribute("spacing_m", "distance between neighbouring points"),
+        attribute("mean_pressure_pa", "mean pressure of the solve"),
+        attribute("wanted_area_fraction", "contact area fraction that the recipe asks for"),
+        attribute("contact_area_fraction", "contact area fraction of the solve"),
+        attribute("friction_coefficient", "friction coefficient of the solve"),
+        attribute("mean_separation_m", "mean separation of the solve"),
+    ];
+    let dataset = |path, unit, description| DatasetSchema {
+        path,
+        unit,
+        description,
+        attributes: attributes.clone(),
+    };
+    ArraysSchema {
+        schema: FIELDS_SCHEMA,
+        version: FIELDS_VERSION,
+        description: FIELDS_DESCRIPTION,
+        datasets: vec![
+            dataset(
+                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",
+                "Pa",
+                "contact pressure, zero outside the contact",
+            ),
+            dataset(
+                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/separation",
+                "m",
+                "separation of rubber and profile, zero in the contact",
+            ),
+        ],
+    }
+}
