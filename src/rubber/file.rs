@@ -10,12 +10,27 @@
 //! modulus_mpa = 1.72
 //! relaxation_time_s = 1.134e-2
 //! ```
+//!
+//! Optional, and written by `asperity rubber fit`: the frequencies at which the moduli were
+//! measured, and how they shift with temperature (one of the two laws of [`ShiftLaw`]).
+//!
+//! ```toml
+//! measured_hz = [0.1, 1e6]                 # at the reference temperature
+//!
+//! [temperature]
+//! reference_c = 20.0
+//! measured_c = [-30.0, 60.0]               # optional
+//! wlf = { c1 = 8.86, c2_k = 101.6 }        # or: arrhenius = { activation_energy_kj_mol = 90.0 }
+//! ```
 
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::{MaxwellBranch, Rubber, RubberError};
+use super::{
+    FrequencyRange, MaxwellBranch, Rubber, RubberError, ShiftLaw, TemperatureDependence,
+    TemperatureError,
+};
 
 const PA_PER_MPA: f64 = 1e6;
 const TABLE_2_1: &str = include_str!("../../data/rubber/table_2_1.toml");
@@ -47,6 +62,78 @@ pub enum RubberFileError {
         /// The first bad number.
         source: RubberError,
     },
+    /// The temperature section, or a temperature that was asked for.
+    #[error("{}", .path.display())]
+    Temperature {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: TemperatureError,
+    },
+    /// Not exactly one law.
+    #[error(
+        "{}: [temperature] has {found} laws, it must have one: either wlf or arrhenius", .path.display()
+    )]
+    Laws {
+        /// The file.
+        path: PathBuf,
+        /// How many there are.
+        found: usize,
+    },
+    /// A measured range that is none.
+    #[error(
+        "{}: measured_hz is [{}, {}], wanted are the lowest and the highest measured frequency, positive",
+        .path.display(), .range[0], .range[1]
+    )]
+    MeasuredRange {
+        /// The file.
+        path: PathBuf,
+        /// The range in Hz.
+        range: [f64; 2],
+    },
+}
+
+/// A rubber with what is known of its measurement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RubberData {
+    /// The rubber at the reference temperature, or at the one it was shifted to.
+    pub rubber: Rubber,
+    /// Frequencies at which it was measured, at the same temperature.
+    pub measured: Option<FrequencyRange>,
+    /// How it shifts with temperature.
+    pub temperature: Option<TemperatureDependence>,
+}
+
+impl From<Rubber> for RubberData {
+    fn from(rubber: Rubber) -> Self {
+        Self { rubber, measured: None, temperature: None }
+    }
+}
+
+impl RubberData {
+    /// Warnings of what is extrapolated from the measurement where a surface excites frequencies: the
+    /// moduli at these, and the shift to the temperature.
+    pub fn extrapolations(&self, excited: Option<FrequencyRange>) -> Vec<String> {
+        let temperature = self.temperature.and_then(|dependence| dependence.extrapolation());
+        let range = self.measured.zip(excited);
+        let frequencies = range.and_then(|(measured, excited)| measured.extrapolation(excited));
+        temperature.into_iter().chain(frequencies).collect()
+    }
+
+    /// The rubber at another temperature in °C, the new reference: relaxation times multiplied by the
+    /// shift factor, moduli as they are, measured frequencies divided by it.
+    ///
+    /// # Errors
+    /// [`TemperatureError`] without a law, or where it has no shift factor.
+    pub fn at_temperature(&self, temperature_c: f64) -> Result<Self, TemperatureError> {
+        let law = self
+            .temperature
+            .ok_or_else(|| TemperatureError::NoLaw { rubber: self.rubber.name.clone() })?;
+        let factor = law.shift_factor(temperature_c)?;
+        let measured = self.measured.map(|range| range.shifted(factor));
+        let temperature = Some(law.about(temperature_c));
+        Ok(Self { rubber: self.rubber.shifted(factor), measured, temperature })
+    }
 }
 
 /// The file as it is written, in the units of its keys.
@@ -59,8 +146,48 @@ struct RubberFile {
     _source: Option<String>,
     equilibrium_modulus_mpa: f64,
     poisson_ratio: f64,
+    measured_hz: Option<[f64; 2]>,
+    temperature: Option<TemperatureEntry>,
     #[serde(default)]
     branches: Vec<BranchEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TemperatureEntry {
+    reference_c: f64,
+    measured_c: Option<[f64; 2]>,
+    wlf: Option<WlfEntry>,
+    arrhenius: Option<ArrheniusEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WlfEntry {
+    c1: f64,
+    c2_k: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ArrheniusEntry {
+    activation_energy_kj_mol: f64,
+}
+
+impl TemperatureEntry {
+    /// The dependence, or the number of laws.
+    fn dependence(&self) -> Result<TemperatureDependence, usize> {
+        let law = match (&self.wlf, &self.arrhenius) {
+            (Some(wlf), None) => ShiftLaw::Wlf { c1: wlf.c1, c2_k: wlf.c2_k },
+            (None, Some(arrhenius)) => {
+                ShiftLaw::Arrhenius { activation_energy_kj_mol: arrhenius.activation_energy_kj_mol }
+            }
+            (None, None) => return Err(0),
+            (Some(_), Some(_)) => return Err(2),
+        };
+        let (reference_c, measured_c) = (self.reference_c, self.measured_c);
+        Ok(TemperatureDependence { reference_c, law, measured_c })
+    }
 }
 
 #[derive(Deserialize)]
@@ -90,10 +217,36 @@ impl From<RubberFile> for Rubber {
 /// # Errors
 /// [`RubberFileError`] with the path; the source has line and key, or the bad number.
 pub fn read_rubber(path: impl AsRef<Path>) -> Result<Rubber, RubberFileError> {
+    Ok(read_rubber_data(path)?.rubber)
+}
+
+/// Reads and validates the rubber in a TOML file with what is known of its measurement.
+///
+/// # Errors
+/// As [`read_rubber`].
+pub fn read_rubber_data(path: impl AsRef<Path>) -> Result<RubberData, RubberFileError> {
     let path = path.as_ref();
     let text = std::fs::read_to_string(path)
         .map_err(|source| RubberFileError::Unreadable { path: path.to_path_buf(), source })?;
-    parse_rubber(path, &text)
+    parse_rubber_data(path, &text)
+}
+
+/// Reads a rubber and, if a temperature in °C is given, shifts it there.
+///
+/// # Errors
+/// As [`read_rubber`]; [`RubberFileError::Temperature`] for a temperature without moduli.
+pub fn read_rubber_at(
+    path: impl AsRef<Path>,
+    temperature_c: Option<f64>,
+) -> Result<RubberData, RubberFileError> {
+    let path = path.as_ref();
+    let data = read_rubber_data(path)?;
+    match temperature_c {
+        None => Ok(data),
+        Some(temperature_c) => data
+            .at_temperature(temperature_c)
+            .map_err(|source| RubberFileError::Temperature { path: path.to_path_buf(), source }),
+    }
 }
 
 /// [`read_rubber`] of a text in memory; the path serves the messages.
@@ -101,13 +254,42 @@ pub fn read_rubber(path: impl AsRef<Path>) -> Result<Rubber, RubberFileError> {
 /// # Errors
 /// Those of [`read_rubber`] but [`RubberFileError::Unreadable`].
 pub fn parse_rubber(path: &Path, text: &str) -> Result<Rubber, RubberFileError> {
+    Ok(parse_rubber_data(path, text)?.rubber)
+}
+
+/// [`read_rubber_data`] of a text in memory; the path serves the messages.
+///
+/// # Errors
+/// Those of [`read_rubber`] but [`RubberFileError::Unreadable`].
+pub fn parse_rubber_data(path: &Path, text: &str) -> Result<RubberData, RubberFileError> {
     let file: RubberFile = toml::from_str(text)
         .map_err(|source| RubberFileError::Syntax { path: path.to_path_buf(), source })?;
+    let measured = file.measured_hz.map(|range| measured_range(path, range)).transpose()?;
+    let temperature = file.temperature.as_ref().map(|entry| dependence(path, entry)).transpose()?;
     let rubber = Rubber::from(file);
     rubber
         .validate()
         .map_err(|source| RubberFileError::Invalid { path: path.to_path_buf(), source })?;
-    Ok(rubber)
+    Ok(RubberData { rubber, measured, temperature })
+}
+
+fn measured_range(path: &Path, range: [f64; 2]) -> Result<FrequencyRange, RubberFileError> {
+    let [lowest_hz, highest_hz] = range;
+    if lowest_hz > 0.0 && lowest_hz < highest_hz && highest_hz.is_finite() {
+        return Ok(FrequencyRange { lowest_hz, highest_hz });
+    }
+    Err(RubberFileError::MeasuredRange { path: path.to_path_buf(), range })
+}
+
+fn dependence(
+    path: &Path,
+    entry: &TemperatureEntry,
+) -> Result<TemperatureDependence, RubberFileError> {
+    let path = || path.to_path_buf();
+    let found =
+        entry.dependence().map_err(|found| RubberFileError::Laws { path: path(), found })?;
+    found.validate().map_err(|source| RubberFileError::Temperature { path: path(), source })?;
+    Ok(found)
 }
 
 impl Rubber {
@@ -183,6 +365,61 @@ mod tests {
         assert!(nan.contains("the relaxation time of branch 1 is NaN"), "{nan}");
         let poisson = failure(&VALID.replace("= 0.5", "= 0.6"));
         assert!(poisson.contains("poisson_ratio is 0.6"), "{poisson}");
+    }
+
+    const TEMPERATURE: &str = "measured_hz = [0.1, 1e4]\n[temperature]\nreference_c = 20.0\n\
+        wlf = { c1 = 8.0, c2_k = 100.0 }\n";
+
+    fn with_temperature() -> String {
+        VALID.replace("[[branches]]", &format!("{TEMPERATURE}[[branches]]"))
+    }
+
+    #[test]
+    fn a_rubber_is_shifted_to_a_temperature() {
+        let data = parse_rubber_data(Path::new("tread.toml"), &with_temperature()).unwrap();
+        assert_eq!(data.rubber, parse(VALID).unwrap());
+        // log10 a = -8 * 60 / 160 = -3.
+        let hot = data.at_temperature(80.0).unwrap();
+        approx::assert_relative_eq!(
+            hot.rubber.branches[0].relaxation_time,
+            1e-6,
+            max_relative = 1e-12
+        );
+        assert_eq!(hot.rubber.branches[0].modulus, 2e6);
+        approx::assert_relative_eq!(hot.measured.unwrap().highest_hz, 1e7, max_relative = 1e-12);
+        let back = hot.at_temperature(20.0).unwrap().rubber.branches[0].relaxation_time;
+        approx::assert_relative_eq!(back, 1e-3, max_relative = 1e-12);
+        let without = RubberData { temperature: None, ..hot };
+        assert!(matches!(without.at_temperature(20.0), Err(TemperatureError::NoLaw { .. })));
+        assert_eq!(data.at_temperature(20.0).unwrap().rubber, data.rubber);
+    }
+
+    #[test]
+    fn mistaken_temperature_sections_are_explained() {
+        let law = "wlf = { c1 = 8.0, c2_k = 100.0 }";
+        let arrhenius = "arrhenius = { activation_energy_kj_mol = 90.0 }";
+        let both = format!("{law}\n{arrhenius}");
+        let cases = [
+            (law, "", "has 0 laws"),
+            (law, both.as_str(), "has 2 laws"),
+            ("c1 = 8.0", "c1 = -8.0", "temperature.wlf.c1 is -8"),
+            ("c2_k = 100.0", "c2_k = nan", "temperature.wlf.c2_k is NaN"),
+            ("reference_c = 20.0", "reference_c = -280.0", "absolute zero"),
+            ("[0.1, 1e4]", "[1e4, 0.1]", "measured_hz is [10000, 0.1]"),
+            ("[0.1, 1e4]", "[0.0, 1e4]", "measured_hz is [0, 10000]"),
+            (law, "measured_c = [9.0, 1.0]\nwlf = { c1 = 8.0, c2_k = 100.0 }", "is [9, 1]"),
+        ];
+        for (old, new, part) in cases {
+            let text = with_temperature().replace(old, new);
+            let error = parse(&text).unwrap_err();
+            let source = std::error::Error::source(&error).map(ToString::to_string);
+            let message = format!("{error}: {}", source.unwrap_or_default());
+            assert!(message.contains("tread.toml") && message.contains(part), "{new}: {message}");
+        }
+        let other = arrhenius.replace("90.0", "8.314462618");
+        let text = with_temperature().replace(law, &other);
+        let data = parse_rubber_data(Path::new("tread.toml"), &text).unwrap();
+        assert!(matches!(data.temperature.unwrap().law, ShiftLaw::Arrhenius { .. }));
     }
 
     #[test]

@@ -1,10 +1,22 @@
-//! Rubber: moduli over frequency, and the file that states them.
+//! Rubber: moduli over frequency and temperature, the file that states them, and their fit to
+//! measured sweeps.
 
 pub mod finite_strain;
+pub mod fit;
 
+mod document;
 mod file;
+mod frequencies;
 mod maxwell;
+mod temperature;
 
-pub use file::{RubberFileError, parse_rubber, read_rubber};
+pub use file::{
+    RubberData, RubberFileError, parse_rubber, parse_rubber_data, read_rubber, read_rubber_at,
+    read_rubber_data,
+};
 pub use finite_strain::{FiniteStrainRubber, Rheology};
+pub use frequencies::FrequencyRange;
 pub use maxwell::{MaxwellBranch, Rubber, RubberError};
+pub use temperature::{
+    GAS_CONSTANT, ShiftLaw, TemperatureDependence, TemperatureError, ZERO_CELSIUS,
+};

@@ -1,0 +1,72 @@
+//! A rubber as the text of its file.
+
+use super::{RubberData, ShiftLaw};
+
+impl RubberData {
+    /// The TOML that [`read_rubber_data`](super::read_rubber_data) reads, numbers with seven
+    /// significant digits.
+    pub fn to_toml(&self, source: &str) -> String {
+        let rubber = &self.rubber;
+        let text = |text: &str| toml::Value::String(text.into()).to_string();
+        let mut lines = vec![
+            "# A generalised Maxwell model,".into(),
+            "# E(w) = equilibrium_modulus + sum_k modulus_k i w tau_k / (1 + i w tau_k).".into(),
+            format!("name = {}", text(&rubber.name)),
+            format!("source = {}", text(source)),
+            format!("equilibrium_modulus_mpa = {:.6e}", rubber.equilibrium_modulus / 1e6),
+            format!("poisson_ratio = {}", rubber.poisson_ratio),
+        ];
+        if let Some(range) = &self.measured {
+            lines.push("# Frequencies of the measurement, at the reference temperature.".into());
+            lines
+                .push(format!("measured_hz = [{:.6e}, {:.6e}]", range.lowest_hz, range.highest_hz));
+        }
+        if let Some(temperature) = &self.temperature {
+            lines.push("\n[temperature]".into());
+            lines.push(format!("reference_c = {:?}", temperature.reference_c));
+            if let Some([lowest, highest]) = temperature.measured_c {
+                lines.push(format!("measured_c = [{lowest:?}, {highest:?}]"));
+            }
+            lines.push(match temperature.law {
+                ShiftLaw::Wlf { c1, c2_k } => {
+                    format!("wlf = {{ c1 = {c1:.6e}, c2_k = {c2_k:.6e} }}")
+                }
+                ShiftLaw::Arrhenius { activation_energy_kj_mol: energy } => {
+                    format!("arrhenius = {{ activation_energy_kj_mol = {energy:.6e} }}")
+                }
+            });
+        }
+        for branch in &rubber.branches {
+            lines.push("\n[[branches]]".into());
+            lines.push(format!("modulus_mpa = {:.6e}", branch.modulus / 1e6));
+            lines.push(format!("relaxation_time_s = {:.6e}", branch.relaxation_time));
+        }
+        lines.join("\n") + "\n"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rubber::{FrequencyRange, Rubber, TemperatureDependence, parse_rubber_data};
+    use std::path::Path;
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let laws = [
+            ShiftLaw::Wlf { c1: 8.86, c2_k: 101.6 },
+            ShiftLaw::Arrhenius { activation_energy_kj_mol: 90.0 },
+        ];
+        for law in laws {
+            let rubber = Rubber { name: "a \"tread\" \\ ö".into(), ..Rubber::table_2_1() };
+            let measured = Some(FrequencyRange { lowest_hz: 0.1, highest_hz: 1.5e7 });
+            let measured_c = Some([-30.0, 60.5]);
+            let temperature = Some(TemperatureDependence { reference_c: 20.0, law, measured_c });
+            let data = RubberData { rubber, measured, temperature };
+            let text = data.to_toml("sweep.csv");
+            assert_eq!(parse_rubber_data(Path::new("tread.toml"), &text).unwrap(), data);
+        }
+        let plain = RubberData::from(Rubber::elastic(3e6, 0.5));
+        assert_eq!(parse_rubber_data(Path::new("e.toml"), &plain.to_toml("")).unwrap(), plain);
+    }
+}

@@ -1,0 +1,247 @@
+//! What a fit gives: a rubber with intervals, its misfit, shift factors and their law.
+
+use super::law::fit_laws;
+use super::model::{Prony, Series};
+use super::terms::Fitted;
+use super::{Sweep, SweepPoint};
+use crate::numerics::statistics::student_t_975;
+use crate::rubber::{
+    FrequencyRange, MaxwellBranch, Rubber, RubberData, ShiftLaw, TemperatureDependence,
+};
+use serde::Serialize;
+use std::f64::consts::{LN_10, TAU};
+
+/// A positive quantity with its 95 % confidence interval.
+///
+/// From the covariance `s^2 (J^T J)^-1` of the linearised fit in the logarithm, Student's t. It takes
+/// the deviations as independent and the number of terms as given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Estimate {
+    /// In SI.
+    pub value: f64,
+    /// Lower and upper end; `None` for a relaxation time at the limit of what is allowed.
+    pub confidence_95: Option<[f64; 2]>,
+}
+
+/// A term of the Prony series.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FittedTerm {
+    /// Modulus in Pa.
+    pub modulus: Estimate,
+    /// Relaxation time in s.
+    pub relaxation_time: Estimate,
+}
+
+/// The shift factor of a temperature.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ShiftFactor {
+    /// Temperature in °C.
+    pub temperature_c: f64,
+    /// `log10 a_T`.
+    pub log10_shift: f64,
+    /// Half width of its 95 % confidence interval in decades; `None` at the reference.
+    pub confidence_95: Option<f64>,
+}
+
+/// A law through the shift factors.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FittedLaw {
+    /// The law.
+    pub law: ShiftLaw,
+    /// Half widths of the 95 % confidence intervals of its coefficients in their order; `None` where
+    /// the factors leave no freedom.
+    pub confidence_95: Option<Vec<f64>>,
+    /// Residual standard deviation in decades: root of the sum of squares over the degrees of
+    /// freedom.
+    pub residual_decades: f64,
+}
+
+/// Relative deviation of a fitted from a measured quantity over the points.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Deviation {
+    /// Root mean square.
+    pub rms: f64,
+    /// Largest.
+    pub largest: f64,
+}
+
+/// Relative deviations over the measured range.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Misfit {
+    /// Of E'.
+    pub storage_modulus: Deviation,
+    /// Of E''.
+    pub loss_modulus: Deviation,
+    /// Of tan δ = E''/E'.
+    pub loss_factor: Deviation,
+}
+
+/// A number of terms that was tried.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Number of terms.
+    pub terms: usize,
+    /// Root mean square of the deviations in ln E' and ln E''.
+    pub rms_misfit: Option<f64>,
+    /// Criterion of Schwarz; the smallest is best.
+    pub bic: Option<f64>,
+    /// Why it cannot be used.
+    pub rejected: Option<&'static str>,
+}
+
+/// A measured point on the master curve, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedPoint {
+    /// Number of its temperature among the shift factors; 0 without temperatures.
+    pub sweep: usize,
+    /// The point, with its frequency multiplied by the shift factor.
+    pub point: SweepPoint,
+}
+
+/// The result of [`fit_sweeps`](super::fit_sweeps).
+#[derive(Debug, Clone, PartialEq)]
+pub struct MasterCurve {
+    /// Relaxed modulus in Pa.
+    pub equilibrium_modulus: Estimate,
+    /// Terms by descending relaxation time.
+    pub terms: Vec<FittedTerm>,
+    /// Reference temperature in °C, if temperatures are known.
+    pub reference_c: Option<f64>,
+    /// Shift factors by ascending temperature, the reference included; empty for one sweep.
+    pub shifts: Vec<ShiftFactor>,
+    /// Laws through them, the better one first.
+    pub laws: Vec<FittedLaw>,
+    /// Deviation from the measured moduli.
+    pub misfit: Misfit,
+    /// Measured frequencies at the reference temperature.
+    pub measured: FrequencyRange,
+    /// The numbers of terms that were tried.
+    pub candidates: Vec<Candidate>,
+    /// The points on the master curve, by sweep and frequency.
+    pub points: Vec<ReducedPoint>,
+}
+
+impl MasterCurve {
+    pub(super) fn new(sweeps: &[Sweep], fitted: &Fitted, candidates: Vec<Candidate>) -> Self {
+        let Fitted { problem, series, .. } = fitted;
+        let half_widths = half_widths(problem, series, fitted.rms);
+        let estimate = |column: usize, logarithm: f64| Estimate {
+            value: logarithm.exp(),
+            confidence_95: half_widths[column]
+                .map(|half| [(logarithm - half).exp(), (logarithm + half).exp()]),
+        };
+        let term = |(i, term): (usize, &[f64; 2])| FittedTerm {
+            modulus: estimate(1 + i, term[0]),
+            relaxation_time: estimate(1 + problem.terms + i, term[1]),
+        };
+        let reference_c = sweeps[problem.reference].temperature_c;
+        let shifts = shift_factors(sweeps, problem, series, &half_widths);
+        let points = reduced(sweeps, series);
+        let frequencies = || points.iter().map(|reduced| reduced.point.angular_frequency / TAU);
+        Self {
+            equilibrium_modulus: estimate(0, series.ln_equilibrium),
+            terms: series.terms.iter().enumerate().map(term).collect(),
+            laws: reference_c.map_or(Vec::new(), |reference| fit_laws(&shifts, reference)),
+            reference_c,
+            shifts,
+            misfit: misfit(problem, series),
+            measured: FrequencyRange {
+                lowest_hz: frequencies().fold(f64::INFINITY, f64::min),
+                highest_hz: frequencies().fold(0.0, f64::max),
+            },
+            candidates,
+            points,
+        }
+    }
+
+    /// The fitted rubber with its measured range and the better shift law.
+    pub fn rubber(&self, name: &str, poisson_ratio: f64) -> RubberData {
+        let branch = |term: &FittedTerm| MaxwellBranch {
+            modulus: term.modulus.value,
+            relaxation_time: term.relaxation_time.value,
+        };
+        let rubber = Rubber {
+            name: name.into(),
+            equilibrium_modulus: self.equilibrium_modulus.value,
+            branches: self.terms.iter().map(branch).collect(),
+            poisson_ratio,
+        };
+        let temperatures = || self.shifts.iter().map(|shift| shift.temperature_c);
+        let measured_c =
+            [temperatures().fold(f64::INFINITY, f64::min), temperatures().fold(-300.0, f64::max)];
+        let temperature = self.laws.first().zip(self.reference_c).map(|(fitted, reference_c)| {
+            TemperatureDependence { reference_c, law: fitted.law, measured_c: Some(measured_c) }
+        });
+        RubberData { rubber, measured: Some(self.measured), temperature }
+    }
+}
+
+/// Half widths of the 95 % intervals of the parameters in their logarithms.
+fn half_widths(problem: &Prony, series: &Series, rms: f64) -> Vec<Option<f64>> {
+    let free = problem.free_columns(series);
+    let jacobian = problem.logarithmic_jacobian(series).select_columns(&free);
+    let n = jacobian.nrows() as f64;
+    let freedom = n - free.len() as f64;
+    let spread = student_t_975(freedom) * rms * (n / freedom).sqrt();
+    let svd = jacobian.svd(false, true);
+    let mut half_widths = vec![None; problem.parameters()];
+    if let Some(directions) = &svd.v_t {
+        for (k, column) in free.into_iter().enumerate() {
+            let growth = directions.column(k).component_div(&svd.singular_values).norm();
+            half_widths[column] = Some(spread * growth);
+        }
+    }
+    half_widths
+}
+
+fn shift_factors(
+    sweeps: &[Sweep],
+    problem: &Prony,
+    series: &Series,
+    half_widths: &[Option<f64>],
+) -> Vec<ShiftFactor> {
+    if sweeps.len() < 2 {
+        return Vec::new();
+    }
+    let factor = |(k, sweep): (usize, &Sweep)| {
+        sweep.temperature_c.map(|temperature_c| ShiftFactor {
+            temperature_c,
+            log10_shift: series.ln_shifts[k] / LN_10,
+            confidence_95: problem
+                .shift_index(k)
+                .and_then(|column| half_widths[column])
+                .map(|half| half / LN_10),
+        })
+    };
+    sweeps.iter().enumerate().filter_map(factor).collect()
+}
+
+fn misfit(problem: &Prony, series: &Series) -> Misfit {
+    let deviation = |of: &dyn Fn([f64; 2]) -> f64| {
+        let deviations = problem.data.iter().map(|datum| {
+            let measured = [datum.ln_storage.exp(), datum.ln_loss.exp()];
+            of(series.moduli(datum)) / of(measured) - 1.0
+        });
+        let (squares, largest) = deviations
+            .fold((0.0, 0.0_f64), |(squares, largest), d| (squares + d * d, largest.max(d.abs())));
+        Deviation { rms: (squares / problem.data.len() as f64).sqrt(), largest }
+    };
+    Misfit {
+        storage_modulus: deviation(&|[storage, _]| storage),
+        loss_modulus: deviation(&|[_, loss]| loss),
+        loss_factor: deviation(&|[storage, loss]| loss / storage),
+    }
+}
+
+fn reduced(sweeps: &[Sweep], series: &Series) -> Vec<ReducedPoint> {
+    let sweeps = sweeps.iter().enumerate();
+    let of_sweep = |(sweep, points): (usize, &Sweep)| {
+        let factor = series.ln_shifts[sweep].exp();
+        let reduced = move |point: &SweepPoint| ReducedPoint {
+            sweep,
+            point: SweepPoint { angular_frequency: point.angular_frequency * factor, ..*point },
+        };
+        points.points.iter().map(reduced).collect::<Vec<_>>()
+    };
+    sweeps.flat_map(of_sweep).collect()
+}
