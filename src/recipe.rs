@@ -1,9 +1,19 @@
 //! The recipe: a TOML file that says what a run does, with units in its keys.
 
+mod hints;
+
 use crate::scans::ScanProblem;
 use crate::stages::{
-    approximate::Approximate, bem::Bem, characterise::Characterise, fem::Fem, hybrid::Hybrid,
-    ingest::Ingest, micro::Micro, realise::Realise, sinusoid::Sinusoid, tables::Tables,
+    approximate::Approximate,
+    bem::Bem,
+    characterise::Characterise,
+    fem::Fem,
+    hybrid::Hybrid,
+    ingest::Ingest,
+    micro::Micro,
+    realise::{MOST_REALISATIONS, Realise},
+    sinusoid::Sinusoid,
+    tables::Tables,
 };
 use crate::surface::ConditioningError;
 use schemars::JsonSchema;
@@ -18,9 +28,11 @@ use std::path::{Path, PathBuf};
 pub struct Recipe {
     /// What the run is about, in one line.
     pub title: String,
-    /// Wanted relative accuracy of the averaged friction, between 1e-4 and 0.5. A quarter each goes to
-    /// the grids (`bem.grid_tolerance`) and to interpolation (`bem.tolerance`, `micro.tolerance`), which
-    /// the recipe then leaves out; the tables warn where the realisations are too few for the rest.
+    /// Wanted relative accuracy of the averaged friction, between 1e-4 and 0.5. A quarter each may go to
+    /// the grids (`bem.grid_tolerance`) and to interpolation (`bem.tolerance`, `micro.tolerance`), an eighth
+    /// to waves that are left out; realisations are solved until their statistical error fits into the
+    /// rest (`bem.average_tolerance`), up to `realise.most_realisations`. The recipe leaves the keys of `bem`
+    /// out then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// Line scans and how to read and condition them. Without this section the waves must stand
@@ -100,18 +112,26 @@ pub enum RecipeError {
         source: std::io::Error,
     },
     /// The text is no recipe; the message shows the line and names the key.
-    #[error("recipe {}: {source}", path.display())]
+    #[error("recipe {}: {source}{hint}", path.display())]
     Parse {
         /// The recipe.
         path: PathBuf,
         /// What the parser says.
         source: Box<toml::de::Error>,
+        /// What may have been meant, as a line of its own; empty if nothing comes to mind.
+        hint: String,
     },
     /// A value out of its range, or two that contradict each other.
-    #[error("recipe {}: {violation}", path.display())]
+    #[error(
+        "recipe {}{}: {violation}",
+        path.display(),
+        line.map_or_else(String::new, |line| format!(", line {line}"))
+    )]
     Value {
         /// The recipe.
         path: PathBuf,
+        /// Line of the key, from 1, if the recipe has it.
+        line: Option<usize>,
         /// The key, its value and what it must be.
         violation: Violation,
     },
@@ -185,12 +205,16 @@ impl Recipe {
     pub fn parse(text: &str, path: &Path) -> Result<Self, RecipeError> {
         let mut recipe: Self = toml::from_str(text).map_err(|source| RecipeError::Parse {
             path: path.to_owned(),
+            hint: hints::nearest_key(source.message()),
             source: Box::new(source),
         })?;
-        recipe
-            .share_tolerance()
-            .and_then(|()| recipe.check())
-            .map_err(|violation| RecipeError::Value { path: path.to_owned(), violation })?;
+        recipe.share_tolerance().and_then(|()| recipe.check()).map_err(|violation| {
+            RecipeError::Value {
+                path: path.to_owned(),
+                line: hints::line(text, &violation),
+                violation,
+            }
+        })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
             *scans = folder.join(&*scans);
@@ -211,11 +235,10 @@ impl Recipe {
     /// Hands the wanted accuracy to the stages, unless some of them have one of their own.
     fn share_tolerance(&mut self) -> Result<(), Violation> {
         let Some(tolerance) = self.tolerance else { return Ok(()) };
-        let own = self
-            .bem
-            .as_ref()
-            .is_some_and(|bem| bem.tolerance.is_some() || bem.grid_tolerance.is_some());
-        let alone = "without bem.tolerance and bem.grid_tolerance, which follow from it";
+        let own = self.bem.as_ref().is_some_and(|bem| {
+            [bem.tolerance, bem.grid_tolerance, bem.average_tolerance].iter().any(Option::is_some)
+        });
+        let alone = "without bem.tolerance, bem.grid_tolerance and bem.average_tolerance, which follow from it";
         demand(!own, "tolerance", tolerance, alone)?;
         self.set_tolerance(tolerance)
     }
@@ -236,9 +259,16 @@ impl Recipe {
         let share = tolerance / 4.0;
         if let Some(bem) = &mut self.bem {
             (bem.tolerance, bem.grid_tolerance) = (Some(share), Some(share));
+            bem.average_tolerance = Some(tolerance);
+        }
+        if let Some(realise) = &mut self.realise {
+            realise.most_realisations.get_or_insert(MOST_REALISATIONS);
         }
         if let Some(micro) = &mut self.micro {
-            micro.tolerance = share;
+            (micro.tolerance, micro.estimate_mesh_error) = (share, true);
+        }
+        if let Some(fem) = &mut self.fem {
+            fem.estimate_mesh_error = true;
         }
         self.tables.tolerance = Some(tolerance);
         self.tolerance = Some(tolerance);
@@ -306,6 +336,13 @@ impl Chain<'_> {
         self.micro.map_or(Ok(()), Micro::check)?;
         self.fem.map_or(Ok(()), Fem::check)?;
         self.tables.check()?;
+        let limit = self.realise.most_realisations.unwrap_or(0);
+        demand(
+            limit == 0 || self.bem.average_tolerance.is_some(),
+            "realise.most_realisations",
+            limit,
+            "only with `tolerance`, which it limits; else set realise.realisations",
+        )?;
         let (scans, given) = (self.ingest.is_some(), !self.approximate.given.is_empty());
         demand(
             scans != given && (!given || self.approximate.waves.is_empty()),

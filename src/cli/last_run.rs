@@ -1,6 +1,7 @@
 //! The recipe that a run folder was last brought up to date with, so that `export` can tell whether
 //! its results still are those of the recipe.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -9,8 +10,10 @@ use serde::{Deserialize, Serialize};
 use super::CliError;
 use super::output::{json, write_file};
 use super::recipe_options::{with_scans, with_tolerance};
+use crate::artifact::{RunView, TOOL_VERSION};
 use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
+use crate::report::html::Origin;
 use crate::stages::Stage;
 
 /// Beside the folders of the stages; no result.
@@ -25,6 +28,14 @@ pub(super) struct LastRun {
     /// That of the command line.
     #[serde(default)]
     tolerance: Option<f64>,
+    /// Text of the recipe, which may be edited later.
+    #[serde(default)]
+    text: Option<String>,
+    #[serde(default)]
+    tool_version: Option<String>,
+    /// Number of threads.
+    #[serde(default)]
+    threads: Option<usize>,
 }
 
 impl LastRun {
@@ -37,7 +48,15 @@ impl LastRun {
     ) -> Result<Self, CliError> {
         let absolute = |path: &Path| std::path::absolute(path).map_err(CliError::failure);
         let scans = scans.iter().map(|path| absolute(path)).collect::<Result<_, _>>()?;
-        Ok(Self { recipe: absolute(recipe)?, scans, tolerance })
+        Ok(Self {
+            recipe: absolute(recipe)?,
+            scans,
+            tolerance,
+            // A recipe that cannot be read any more does not spoil a run that is done.
+            text: std::fs::read_to_string(recipe).ok(),
+            tool_version: Some(TOOL_VERSION.to_owned()),
+            threads: Some(rayon::current_num_threads()),
+        })
     }
 
     /// # Errors
@@ -50,6 +69,38 @@ impl LastRun {
     /// None where no run left one that can be read.
     pub(super) fn read(out: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(out.join(FILE)).ok()?).ok()
+    }
+
+    /// Where the results of a run come from, for its report.
+    pub(super) fn origin(self, view: &RunView) -> Origin {
+        Origin {
+            doubts: self.doubts(view),
+            command: Some(self.command(view.path())),
+            recipe: self.text,
+            tool_version: self.tool_version,
+            threads: self.threads,
+        }
+    }
+
+    /// Why results are not what the recipe asks for, by stage; nothing of stages that have none.
+    pub(super) fn doubts(&self, view: &RunView) -> BTreeMap<Stage, String> {
+        let stages = Stage::CHAIN.into_iter().chain([Stage::Sinusoid]);
+        let there = stages.filter(|stage| view.path().join(stage.name()).exists());
+        there.filter_map(|stage| Some((stage, self.doubt(view.path(), stage.name())?))).collect()
+    }
+
+    /// The command that brings the folder up to date, for a shell.
+    fn command(&self, out: &Path) -> String {
+        let mut words = vec!["asperity".to_owned(), "run".into(), quoted(&self.recipe)];
+        if !self.scans.is_empty() {
+            words.push("--scans".into());
+            words.extend(self.scans.iter().map(|path| quoted(path)));
+        }
+        if let Some(tolerance) = self.tolerance {
+            words.extend(["--tolerance".into(), tolerance.to_string()]);
+        }
+        words.extend(["--out".into(), quoted(out)]);
+        words.join(" ")
     }
 
     /// Why the result of a stage in the folder `out` is not what the recipe asks for; none if it is.
@@ -80,6 +131,16 @@ impl LastRun {
             first_cause(&states, reasons)
         ))
     }
+}
+
+/// A path as one word of a shell.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:=@,".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        return text;
+    }
+    format!("'{}'", text.replace('\'', r"'\''"))
 }
 
 /// The reasons, or those of the stage before that they refer to.
