@@ -1,13 +1,22 @@
-//! Friction tables and figures for people.
+//! Friction tables, figures and the report of a run, for people.
 
 pub(crate) mod figure;
+pub mod figures;
+pub mod html;
+pub mod plot;
+mod read;
+mod rubber_figure;
 mod sinusoid;
 mod sinusoid_figure;
+mod spreadsheet;
 mod tables;
 
 pub use figure::{FigureError, friction_figure};
+pub use read::ReportError;
+pub use rubber_figure::rubber_figure;
 pub use sinusoid::Study;
 pub use sinusoid_figure::study_figure;
+pub use spreadsheet::workbook;
 pub use tables::{
-    FrictionTable, comparison_markdown, data_frame, friction_tables, latex, markdown,
+    About, FrictionTable, comparison_markdown, data_frame, friction_tables, latex, markdown,
 };

@@ -5,12 +5,7 @@ use crate::common::Campaign;
 use std::fs;
 
 fn outcome(campaign: &Campaign, arguments: &str) -> Outcome {
-    let output = campaign.command(arguments).output().unwrap();
-    Outcome {
-        code: output.status.code().unwrap(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    Outcome::of(&mut campaign.command(arguments))
 }
 
 const RUN: &str = "run recipe.toml --out out";
@@ -93,7 +88,7 @@ fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
         (
             "[characterise]",
             "[characterise]\nlambda_s_mm = 2.5\nsection_length_mm = 2.5",
-            &["characterise.(lambda_s_mm, section_length_mm) = (2.5, 2.5)"],
+            &["recipe.toml, line 19: characterise.(lambda_s_mm, section_length_mm) = (2.5, 2.5)"],
         ),
         (
             "[characterise]",
@@ -124,7 +119,8 @@ fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
         for command in ["run", "status"] {
             let arguments = format!("{command} recipe.toml --out out");
             let message = outcome(&campaign, &arguments).error(2);
-            assert!(message.contains("recipe recipe.toml: "), "{message}");
+            let placed = ["recipe recipe.toml: ", "recipe recipe.toml, line "];
+            assert!(placed.iter().any(|place| message.contains(place)), "{message}");
             for part in parts {
                 assert!(message.contains(part), "`{to}`, wanted `{part}`:\n{message}");
             }
@@ -214,6 +210,11 @@ fn a_failed_computation_is_exit_code_1_and_keeps_what_was_done() {
     assert_eq!((failed.code, failed.stdout.as_str()), (1, ""));
     let message = failed.stderr.lines().find(|line| line.starts_with("error: ")).unwrap();
     assert!(message.starts_with("error: bem: 3 waves, realisation "), "{message}");
+    assert!(
+        failed.stderr.contains("1e-12 is less than two of 512 grid points"),
+        "{}",
+        failed.stderr
+    );
     assert!(campaign.path("out/realise/manifest.json").exists());
     assert!(!campaign.path("out/bem").exists());
 }
@@ -270,7 +271,7 @@ fn exports_are_complete_or_refused() {
         export("out --format csv").error(2).contains("no finished result of the stage `tables`")
     );
     assert!(export("recipe.toml --format csv").error(2).contains("give the folder of a run"));
-    assert!(export("out --format xlsx").error(2).contains("csv, markdown, latex, parquet, svg"));
+    assert!(export("out --format docx").error(2).contains("latex, parquet, xlsx, svg"));
     assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).result(), "");
     assert!(export("out --format csv --waves 9").error(2).contains("or --speed out to see all"));
     assert!(export("out --format csv --speed 11").error(2).contains("no table"));
@@ -281,7 +282,7 @@ fn exports_are_complete_or_refused() {
 
     let csv = export("out --format csv --speed 50").result();
     let header = "area_fraction,realisation_1,realisation_2,average,standard_deviation,\
-                  confidence_95,error_estimate";
+                  confidence_95,left_out_error,error_estimate";
     assert_eq!(csv.lines().next(), Some(header));
     assert_eq!(csv.lines().count(), 1 + 3);
     for (format, start) in [("markdown", ""), ("latex", ""), ("svg", "<svg")] {
@@ -458,4 +459,31 @@ fn a_plan_tells_models_and_grids_and_writes_nothing() {
     campaign.write("sine.toml", "title = 'x'\n[sinusoid]\nrubber = 'rubber.toml'\n");
     let message = outcome(&campaign, "plan sine.toml").error(2);
     assert!(message.contains("sinusoid"), "{message}");
+}
+
+#[test]
+fn a_recipe_has_a_temperature_and_tells_what_is_extrapolated() {
+    let campaign = Campaign::new();
+    campaign.edit("recipe.toml", "speeds_mm_s", "temperature_c = 60.0\nspeeds_mm_s");
+    let refused = outcome(&campaign, RUN).error(2);
+    assert!(refused.contains("rubber.toml") && refused.contains("no [temperature]"), "{refused}");
+    assert!(!campaign.path("out").exists());
+
+    let rubber = campaign.read("rubber.toml");
+    let section = "measured_hz = [1.0, 1e3]\n[temperature]\nreference_c = 20.0\n\
+        measured_c = [0.0, 40.0]\nwlf = { c1 = 8.0, c2_k = 120.0 }\n";
+    campaign.write("rubber.toml", &rubber.replacen("\n[[", &format!("\n{section}\n[["), 1));
+    let run = outcome(&campaign, RUN);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("60 °C is outside the 0 to 40 °C"), "{}", run.stderr);
+    // log10 a = -8 * 40 / 160 = -2: the measured range is 100 to 1e5 Hz, of the waves those of 0.5 and 1 mm have
+    // an amplitude.
+    let frequencies = "from 1.000e1 to 2.000e1 Hz, it was measured from 1.000e2 to 1.000e5 Hz";
+    assert!(run.stderr.contains(frequencies), "{}", run.stderr);
+
+    campaign.edit("recipe.toml", "temperature_c = 60.0", "temperature_c = 20.0");
+    let status = outcome(&campaign, "status recipe.toml --out out").result();
+    assert!(status.contains("bem.temperature_c: 60.0 -> 20.0"), "{status}");
+    let run = outcome(&campaign, RUN);
+    assert!(!run.stderr.contains("warning: the waves"), "{}", run.stderr);
 }

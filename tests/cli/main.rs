@@ -3,11 +3,15 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bench;
 mod campaign;
 mod files;
 mod inspect;
+mod report;
+mod rubber;
 mod solve;
 mod solve_fem;
+mod start;
 mod synth;
 
 use std::path::{Path, PathBuf};
@@ -21,6 +25,15 @@ struct Outcome {
 }
 
 impl Outcome {
+    fn of(command: &mut Command) -> Self {
+        let output = command.output().unwrap();
+        Self {
+            code: output.status.code().unwrap(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
     /// Standard output of a success that has nothing to complain about.
     fn result(self) -> String {
         assert_eq!((self.code, self.stderr.as_str()), (0, ""));
@@ -47,12 +60,7 @@ fn binary() -> Command {
 fn asperity_at(arguments: &str, path: &Path) -> Outcome {
     let path = path.to_str().unwrap();
     let arguments = arguments.split_whitespace().map(|argument| argument.replace("{}", path));
-    let output = binary().args(arguments).output().unwrap();
-    Outcome {
-        code: output.status.code().unwrap(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    Outcome::of(binary().args(arguments))
 }
 
 fn asperity(arguments: &str) -> Outcome {

@@ -1,0 +1,85 @@
+//! `asperity plot`: single figures of a run.
+
+use super::CliError;
+use super::last_run::LastRun;
+use super::output::{aligned, note, print, write_file};
+use super::run_folder;
+use crate::report::figures::{ALL, Kind};
+use crate::report::plot::png;
+use clap::Args;
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  The figures that there are:
+    asperity plot --list
+  Friction over contact area of a run, for the screen and for a paper:
+    asperity plot friction runs/asphalt --to friction.png
+    asperity plot friction runs/asphalt --to friction.svg";
+
+/// Draw a figure of a run as SVG or PNG.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Plot {
+    /// Name of the figure, one of --list.
+    #[arg(required_unless_present = "list")]
+    figure: Option<String>,
+    /// Run folder.
+    #[arg(required_unless_present = "list")]
+    run: Option<PathBuf>,
+    /// File to write, .svg or .png; SVG on standard output if not given.
+    #[arg(long, value_name = "FILE")]
+    to: Option<PathBuf>,
+    /// Say which figures there are.
+    #[arg(long, conflicts_with_all = ["figure", "run", "to"])]
+    list: bool,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    force: bool,
+}
+
+impl Plot {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`].
+    pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
+        let (Some(name), Some(run)) = (&self.figure, &self.run) else {
+            let lines: Vec<_> = ALL.iter().map(|kind| (kind.name, kind.shows.to_owned())).collect();
+            return print(&aligned(&lines));
+        };
+        let Some(kind) = Kind::named(name) else {
+            let names: Vec<&str> = ALL.iter().map(|kind| kind.name).collect();
+            return Err(CliError::input(format!(
+                "there is no figure `{name}`; there are {}",
+                names.join(", ")
+            )));
+        };
+        let as_png = self.wants_png()?;
+        let view = run_folder::view(run)?;
+        let figure = kind.figure(&view)?.ok_or_else(|| {
+            let run = run.display();
+            CliError::input(format!("{run} has no figure `{name}`: that takes {}", kind.wants))
+        })?;
+        let doubts = LastRun::read(run).map(|last| last.doubts(&view)).unwrap_or_default();
+        for (_, doubt) in doubts.iter().filter(|(stage, _)| kind.stages.contains(stage)) {
+            note(quiet, format_args!("warning: {doubt}"));
+        }
+        let svg = figure.svg().map_err(CliError::failure)?;
+        let Some(path) = &self.to else { return print(&svg) };
+        let bytes = if as_png { png(&svg).map_err(CliError::failure)? } else { svg.into_bytes() };
+        write_file(path, self.force, |out| out.write_all(&bytes))
+    }
+
+    /// The format, by the ending of the file.
+    fn wants_png(&self) -> Result<bool, CliError> {
+        let Some(path) = &self.to else { return Ok(false) };
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg") => Ok(false),
+            Some("png") => Ok(true),
+            _ => {
+                Err(CliError::input(format!("{}: figures are .svg or .png files", path.display())))
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What accuracy costs, and what the error is made of.
+
+use super::{grouped, heading, speed_key};
+use crate::artifact::RunView;
+use crate::report::ReportError;
+use crate::report::plot::{Axis, Figure, Mark, Panel, Points, Series};
+use crate::report::read::rows;
+use crate::stages::bem::{SOLVES_FILE, SolveRow};
+use crate::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};
+use crate::stages::micro::{SAMPLES_FILE, SampleRow};
+use crate::stages::tables::{FRICTION_FILE, FrictionRow};
+
+/// Errors below this are round-off; they would stretch the axis.
+const LEAST_ERROR: f64 = 1e-12;
+
+/// Seconds of every solve against its estimated error, and the errors of the averages by part.
+pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
+    let mut panels: Vec<Panel> = solves(run)?.into_iter().collect();
+    let friction = rows::<FrictionRow>(run, "tables", FRICTION_FILE)?.unwrap_or_default();
+    let half_space: Vec<FrictionRow> =
+        friction.into_iter().filter(|row| row.model == "bem").collect();
+    let tables = grouped(&half_space, |row| (row.waves, speed_key(row.speed_mm_s)));
+    panels.extend(tables.into_values().filter_map(|rows| parts(&rows)));
+    let caption = "Wall time of every contact against the estimated relative error of its friction \
+                   by grid or mesh, and the parts of the estimated error of the averaged friction of \
+                   the half-space. Parts that are zero are left out."
+        .into();
+    Ok((!panels.is_empty()).then_some(Figure { caption, panels }))
+}
+
+fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
+    let bem = rows::<SolveRow>(run, "bem", SOLVES_FILE)?.unwrap_or_default();
+    let micro = rows::<SampleRow>(run, "micro", SAMPLES_FILE)?.unwrap_or_default();
+    let fem = rows::<FemSolveRow>(run, "fem", FEM_SOLVES_FILE)?.unwrap_or_default();
+    let relative = |error: f64, friction: f64, seconds: f64| {
+        let error = (error / friction).abs();
+        (error.is_finite() && error > LEAST_ERROR && seconds > 0.0).then_some((error, seconds))
+    };
+    let of_bem = bem.iter().filter_map(|row| {
+        relative(row.discretisation_error?, row.friction_coefficient, row.seconds)
+    });
+    let of_micro = micro.iter().filter_map(|row| {
+        let friction = row.friction_finite_deformation;
+        relative(friction - row.friction_from_heat, friction, row.seconds)
+    });
+    let of_fem = fem.iter().filter_map(|row| {
+        let friction = row.friction_coefficient;
+        relative(friction - row.friction_from_heat, friction, row.seconds)
+    });
+    let kinds: [(&str, usize, Points); 3] = [
+        ("half-space, error by the grid", 1, of_bem.collect()),
+        ("microscale, force against heat", 2, of_micro.collect()),
+        ("fem, force against heat", 3, of_fem.collect()),
+    ];
+    let series: Vec<Series> = kinds
+        .into_iter()
+        .filter(|(_, _, points)| !points.is_empty())
+        .map(|(name, colour, points)| Series::new(name, colour, Mark::Circles(points)))
+        .collect();
+    Ok((!series.is_empty()).then(|| Panel {
+        title: "Every solved contact".into(),
+        across: Axis::logarithmic("estimated relative error of friction"),
+        up: Axis::logarithmic("wall time / s"),
+        series,
+    }))
+}
+
+/// Parts of the relative error over contact area; none where none is known.
+fn parts(rows: &[&FrictionRow]) -> Option<Panel> {
+    type Part = (&'static str, fn(&FrictionRow) -> Option<f64>);
+    let parts: [Part; 5] = [
+        ("realisations (95 %)", |row| row.confidence_95),
+        ("interpolation", |row| Some(row.interpolation_error)),
+        ("grid", |row| row.discretisation_error),
+        ("waves left out", |row| Some(row.left_out_error)),
+        ("sum", |row| row.error_estimate),
+    ];
+    let series = parts.into_iter().enumerate().filter_map(|(number, (name, part))| {
+        let points: Vec<(f64, f64)> = rows
+            .iter()
+            .filter_map(|row| Some((row.contact_area_fraction, (part(row)? / row.mean).abs())))
+            .filter(|(_, error)| error.is_finite() && *error > LEAST_ERROR)
+            .collect();
+        let is_sum = number + 1 == parts.len();
+        let (colour, mark) =
+            if is_sum { (0, Mark::Dashed(points)) } else { (number + 1, Mark::Line(points)) };
+        let empty = matches!(&mark, Mark::Line(p) | Mark::Dashed(p) if p.is_empty());
+        (!empty).then(|| Series::new(name, colour, mark))
+    });
+    let series: Vec<Series> = series.collect();
+    (!series.is_empty()).then(|| Panel {
+        title: format!("Parts of the error, {}", heading(rows[0].waves, rows[0].speed_mm_s)),
+        across: Axis::from_zero("contact area fraction Ac/A0"),
+        up: Axis::logarithmic("estimated relative error of friction"),
+        series,
+    })
+}

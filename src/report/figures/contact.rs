@@ -1,0 +1,33 @@
+//! Contact area over pressure.
+
+use super::{grouped, speed_key};
+use crate::artifact::RunView;
+use crate::report::ReportError;
+use crate::report::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::report::read::rows;
+use crate::stages::bem::{SOLVES_FILE, SolveRow};
+
+/// A panel for each number of waves; in it every solved contact, a colour for each speed.
+pub(super) fn area(run: &RunView) -> Result<Option<Figure>, ReportError> {
+    let Some(solves) = rows::<SolveRow>(run, "bem", SOLVES_FILE)? else { return Ok(None) };
+    let panels = grouped(&solves, |row| row.waves).into_iter().map(|(waves, rows)| {
+        let speeds = grouped(&rows, |row| speed_key(row.speed_mm_s)).into_values().enumerate();
+        let series = speeds.map(|(number, rows)| {
+            let points = rows.iter().map(|row| (row.pressure_mpa, row.contact_area_fraction));
+            let label = format!("{} mm/s", rows[0].speed_mm_s);
+            Series::new(label, number + 1, Mark::Circles(points.collect()))
+        });
+        Panel {
+            title: format!("{waves} waves, half-space"),
+            across: Axis::logarithmic("mean pressure p / MPa"),
+            up: Axis::logarithmic("contact area fraction Ac/A0"),
+            series: series.collect(),
+        }
+    });
+    Ok(Some(Figure {
+        caption:
+            "Contact area fraction over mean pressure: every solved contact of the half-space."
+                .into(),
+        panels: panels.collect(),
+    }))
+}

@@ -1,0 +1,206 @@
+//! The figures of a run, each made of its results alone.
+
+mod accuracy;
+mod contact;
+mod correction;
+mod fields;
+mod friction;
+mod roughness;
+mod rubber;
+mod scans;
+mod waves;
+
+pub(super) use rubber::{Material, material};
+pub(super) use waves::microscale_slope;
+
+use super::ReportError;
+use super::plot::Figure;
+use crate::artifact::RunView;
+use crate::stages::Stage;
+
+/// A kind of figure.
+#[derive(Debug)]
+pub struct Kind {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it shows.
+    pub shows: &'static str,
+    /// What a run without it lacks.
+    pub wants: &'static str,
+    /// The stages whose results it shows.
+    pub stages: &'static [Stage],
+    make: fn(&RunView) -> Result<Option<Figure>, ReportError>,
+}
+
+/// All kinds of figures, in the order of the data.
+pub static ALL: [Kind; 13] = [
+    Kind {
+        name: "scans",
+        shows: "heights of some windows over their length",
+        wants: "scans, section [ingest]",
+        stages: &[Stage::Ingest],
+        make: scans::scans,
+    },
+    Kind {
+        name: "heights",
+        shows: "distribution of the heights of all windows",
+        wants: "scans, section [ingest]",
+        stages: &[Stage::Ingest],
+        make: scans::heights,
+    },
+    Kind {
+        name: "correlation",
+        shows: "height-difference correlation of the scans and of the superposed sines",
+        wants: "scans, section [ingest]",
+        stages: &[Stage::Characterise, Stage::Approximate],
+        make: roughness::correlation,
+    },
+    Kind {
+        name: "spectrum",
+        shows: "power spectral density with its standard error",
+        wants: "scans, section [ingest]",
+        stages: &[Stage::Characterise],
+        make: roughness::spectrum,
+    },
+    Kind {
+        name: "waves",
+        shows: "amplitudes and root mean square slopes of the superposed sines",
+        wants: "the stage approximate",
+        stages: &[Stage::Approximate, Stage::Micro],
+        make: waves::waves,
+    },
+    Kind {
+        name: "friction",
+        shows: "friction over contact area, all models, with the band over realisations",
+        wants: "the stage tables",
+        stages: &[Stage::Tables],
+        make: friction::friction,
+    },
+    Kind {
+        name: "comparison",
+        shows: "computed beside published friction",
+        wants: "published tables, key tables.published",
+        stages: &[Stage::Tables],
+        make: friction::comparison,
+    },
+    Kind {
+        name: "area",
+        shows: "contact area over pressure of every solved contact",
+        wants: "the stage bem",
+        stages: &[Stage::Bem],
+        make: contact::area,
+    },
+    Kind {
+        name: "correction",
+        shows: "friction of the microscale under both models and the correction, over pressure",
+        wants: "a microscale: section [micro], and waves that are steep enough",
+        stages: &[Stage::Micro, Stage::Hybrid],
+        make: correction::correction,
+    },
+    Kind {
+        name: "pressure",
+        shows: "contact pressure along the surface",
+        wants: "fields, key bem.field_area_fractions",
+        stages: &[Stage::Bem],
+        make: fields::pressure,
+    },
+    Kind {
+        name: "deformation",
+        shows: "profile and deformed rubber along the surface",
+        wants: "fields, key bem.field_area_fractions",
+        stages: &[Stage::Realise, Stage::Bem],
+        make: fields::deformation,
+    },
+    Kind {
+        name: "rubber",
+        shows: "moduli and loss factor over frequency with the frequencies that the surface excites",
+        wants: "the stage bem",
+        stages: &[Stage::Realise, Stage::Bem],
+        make: rubber::rubber,
+    },
+    Kind {
+        name: "accuracy",
+        shows: "seconds against estimated error of every contact, and the parts of the error",
+        wants: "the stage bem",
+        stages: &[Stage::Bem, Stage::Micro, Stage::Fem, Stage::Tables],
+        make: accuracy::accuracy,
+    },
+];
+
+impl Kind {
+    /// The kind of that name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|kind| kind.name == name)
+    }
+
+    /// The figure of a run; none where the run has not what it shows.
+    ///
+    /// # Errors
+    /// [`ReportError`] if results cannot be read.
+    pub fn figure(&self, run: &RunView) -> Result<Option<Figure>, ReportError> {
+        (self.make)(run)
+    }
+}
+
+/// At most about twice `columns` points that look alike: the lowest and the highest of each stretch.
+fn thinned(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
+    let stretch = points.len().div_ceil(columns.max(1));
+    if stretch <= 2 {
+        return points.to_vec();
+    }
+    let ends = |points: &[(f64, f64)]| {
+        let valid = || points.iter().enumerate().filter(|(_, point)| !point.1.is_nan());
+        let low = valid().min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let high = valid().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        match (low, high) {
+            (Some((i, low)), Some((k, high))) if i < k => vec![*low, *high],
+            (Some((_, low)), Some((_, high))) => vec![*high, *low],
+            _ => vec![points[0]],
+        }
+    };
+    points.chunks(stretch).flat_map(ends).collect()
+}
+
+/// Curves of a table, sorted and told apart by what `key` says.
+fn grouped<R, K: Ord>(rows: &[R], key: impl Fn(&R) -> K) -> std::collections::BTreeMap<K, Vec<&R>> {
+    let mut groups = std::collections::BTreeMap::<K, Vec<&R>>::new();
+    for row in rows {
+        groups.entry(key(row)).or_default().push(row);
+    }
+    groups
+}
+
+/// A speed as a key: its bits sort like itself, since speeds are positive.
+fn speed_key(speed_mm_s: f64) -> u64 {
+    speed_mm_s.to_bits()
+}
+
+/// What a table is of, for headings.
+fn heading(waves: u32, speed_mm_s: f64) -> String {
+    format!("{waves} waves, {speed_mm_s} mm/s")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique() {
+        let names: std::collections::BTreeSet<_> = ALL.iter().map(|kind| kind.name).collect();
+        assert_eq!(names.len(), ALL.len());
+    }
+
+    #[test]
+    fn thinning_keeps_the_extremes_and_the_gaps() {
+        let mut points: Vec<(f64, f64)> =
+            (0..10_000).map(|i| (f64::from(i), (f64::from(i) * 0.7).sin())).collect();
+        points[5123].1 = 9.0;
+        points[7007].1 = -9.0;
+        points[2000..2200].iter_mut().for_each(|point| point.1 = f64::NAN);
+        let few = thinned(&points, 500);
+        assert!(few.len() <= 1000);
+        assert!(few.contains(&(5123.0, 9.0)) && few.contains(&(7007.0, -9.0)));
+        assert!(few.iter().any(|point| point.1.is_nan()));
+        assert!(few.is_sorted_by(|a, b| a.0 <= b.0));
+    }
+}

@@ -1,0 +1,251 @@
+//! Sections on friction, its tables and its error.
+
+use super::Report;
+use super::page::{absent, number, optional, percent, table};
+use crate::report::ReportError;
+use crate::report::read::rows;
+use crate::report::tables::{About, FrictionTable, friction_tables};
+use crate::stages::Stage;
+use crate::stages::bem::{REALISATIONS_FILE, RealisationsRow, SOLVES_FILE, SolveRow};
+use crate::stages::tables::{
+    COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow,
+};
+use maud::{Markup, html};
+
+const NO_TABLES: &str = "This run has no averaged friction yet: the stage tables is not there.";
+
+impl Report<'_> {
+    fn friction_rows(&self) -> Result<Vec<FrictionRow>, ReportError> {
+        Ok(rows(self.run, "tables", FRICTION_FILE)?.unwrap_or_default())
+    }
+
+    pub(super) fn friction(&self) -> Result<Markup, ReportError> {
+        let all = self.friction_rows()?;
+        if all.is_empty() {
+            return Ok(absent(NO_TABLES));
+        }
+        let models = rows::<ModelRow>(self.run, "tables", MODELS_FILE)?.unwrap_or_default();
+        Ok(html! {
+            (self.warnings(&[Stage::Tables])?)
+            p { "Models: " (models_in_words(&all)) "." }
+            (self.figure("friction")?)
+            (self.figure("area")?)
+            @if !models.is_empty() { (model_table(&models)) }
+            (self.figure("comparison")?)
+        })
+    }
+
+    pub(super) fn tables(&self) -> Result<Markup, ReportError> {
+        let all = self.friction_rows()?;
+        if all.is_empty() {
+            return Ok(absent(NO_TABLES));
+        }
+        let compared =
+            rows::<ComparisonRow>(self.run, "tables", COMPARISON_FILE)?.unwrap_or_default();
+        let about = About::of(self.run)?;
+        Ok(html! {
+            (self.doubt(&[Stage::Tables]))
+            @for one in friction_tables(&all) { (friction_table(&one, &about)) }
+            @for rows in compared.chunk_by(|a, b| a.published_table == b.published_table) {
+                (comparison_table(rows))
+            }
+        })
+    }
+
+    pub(super) fn accuracy(&self) -> Result<Markup, ReportError> {
+        let solves = rows::<SolveRow>(self.run, "bem", SOLVES_FILE)?.unwrap_or_default();
+        let realisations =
+            rows::<RealisationsRow>(self.run, "bem", REALISATIONS_FILE)?.unwrap_or_default();
+        let friction = self.friction_rows()?;
+        let tolerance = self.tolerance()?;
+        Ok(html! {
+            (self.warnings(&[Stage::Bem])?)
+            p { @match tolerance {
+                Some(tolerance) => { "The recipe asks for a relative accuracy of the averages of " (percent(tolerance)) "." }
+                None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated all the same." }
+            } }
+            (self.seconds()?)
+            (self.figure("accuracy")?)
+            @if !friction.is_empty() { (error_table(&friction)) }
+            @if !solves.is_empty() {
+                p { (solves.len()) " contacts of the half-space took "
+                    (number(solves.iter().map(|row| row.seconds).sum(), 3))
+                    " s of all threads together; the largest residual is "
+                    (number(solves.iter().map(|row| row.residual).fold(0.0, f64::max), 2)) "." }
+            }
+            @if !realisations.is_empty() { (realisation_table(&realisations)) }
+        })
+    }
+
+    fn tolerance(&self) -> Result<Option<f64>, ReportError> {
+        let manifest = self.run.stage_manifest("tables")?;
+        Ok(manifest.and_then(|manifest| {
+            manifest
+                .parameters
+                .pointer("/tables/tolerance")
+                .or_else(|| manifest.parameters.get("tolerance"))?
+                .as_f64()
+        }))
+    }
+
+    fn seconds(&self) -> Result<Markup, ReportError> {
+        let mut lines = vec![];
+        for stage in Stage::CHAIN {
+            if let Some(manifest) = self.run.stage_manifest(stage.name())? {
+                lines.push(vec![stage.name().to_owned(), format!("{:.2}", manifest.seconds)]);
+            }
+        }
+        let caption = "Wall time of each stage, when it was last computed";
+        Ok(table(caption, &["stage", "wall time / s"], 1, lines))
+    }
+}
+
+fn models_in_words(rows: &[FrictionRow]) -> String {
+    let mut names: Vec<&str> = rows.iter().map(|row| row.model.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let words = names.into_iter().map(|name| match name {
+        "bem" => "bem, the viscoelastic half-space".to_owned(),
+        "hybrid" => "hybrid, the half-space corrected by its steepest waves".into(),
+        "fem" => "fem, all waves at finite deformation".into(),
+        other => format!("{other}, a theory"),
+    });
+    words.collect::<Vec<_>>().join("; ")
+}
+
+fn friction_table(one: &FrictionTable, about: &About) -> Markup {
+    let count = one.rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
+    // Single values of more realisations than this fill pages; they are in the exported tables.
+    let shown = if count <= 10 { count } else { 0 };
+    let mut header: Vec<String> = vec!["Ac/A0".into(), "pressure / MPa".into()];
+    header.extend((1..=shown).map(|k| format!("µ {k}")));
+    header
+        .extend(["mean µ", "standard deviation", "± 95 %", "error, all parts"].map(str::to_owned));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    table(
+        &one.caption(about),
+        &header,
+        1,
+        one.rows.iter().map(|row| {
+            let mut cells =
+                vec![row.contact_area_fraction.to_string(), number(row.pressure_mpa, 3)];
+            cells.extend((0..shown).map(|k| optional(row.realisations.get(k).copied(), 4)));
+            cells.push(number(row.mean, 4));
+            let errors = [row.standard_deviation, row.confidence_95, row.error_estimate];
+            cells.extend(errors.map(|error| optional(error, 2)));
+            cells
+        }),
+    )
+}
+
+fn comparison_table(rows: &[ComparisonRow]) -> Markup {
+    table(
+        &format!(
+            "{}, published and computed, {} waves, {} mm/s",
+            rows[0].published_table, rows[0].waves, rows[0].speed_mm_s
+        ),
+        &["Ac/A0", "published µ", "computed µ", "± 95 %", "difference"],
+        1,
+        rows.iter().map(|row| {
+            vec![
+                row.contact_area_fraction.to_string(),
+                number(row.published, 3),
+                number(row.computed, 3),
+                optional(row.confidence_95, 2),
+                percent(row.relative_difference),
+            ]
+        }),
+    )
+}
+
+fn model_table(models: &[ModelRow]) -> Markup {
+    table(
+        "How far the models are apart, means over the contact areas that both have",
+        &[
+            "model",
+            "measured by",
+            "waves",
+            "speed / (mm/s)",
+            "Ac/A0 from",
+            "to",
+            "areas",
+            "of averages",
+            "of realisations",
+            "bias",
+        ],
+        2,
+        models.iter().map(|row| {
+            vec![
+                row.model.clone(),
+                row.reference.clone(),
+                row.waves.to_string(),
+                row.speed_mm_s.to_string(),
+                row.from_area_fraction.to_string(),
+                row.to_area_fraction.to_string(),
+                row.areas.to_string(),
+                percent(row.relative_error_of_averages),
+                percent(row.relative_error),
+                percent(row.bias),
+            ]
+        }),
+    )
+}
+
+fn error_table(rows: &[FrictionRow]) -> Markup {
+    table(
+        "Estimated errors of the averaged friction by part, absolute",
+        &[
+            "model",
+            "waves",
+            "speed / (mm/s)",
+            "Ac/A0",
+            "mean µ",
+            "realisations (95 %)",
+            "interpolation",
+            "grid",
+            "waves left out",
+            "sum",
+            "sum, relative",
+        ],
+        1,
+        rows.iter().map(|row| {
+            vec![
+                row.model.clone(),
+                row.waves.to_string(),
+                row.speed_mm_s.to_string(),
+                row.contact_area_fraction.to_string(),
+                number(row.mean, 4),
+                optional(row.confidence_95, 2),
+                number(row.interpolation_error, 2),
+                optional(row.discretisation_error, 2),
+                number(row.left_out_error, 2),
+                optional(row.error_estimate, 2),
+                row.error_estimate.map_or_else(|| "–".into(), |error| percent(error / row.mean)),
+            ]
+        }),
+    )
+}
+
+fn realisation_table(rows: &[RealisationsRow]) -> Markup {
+    table(
+        "Realisations that the averages rest on",
+        &[
+            "waves",
+            "speed / (mm/s)",
+            "realisations",
+            "with all waves",
+            "left out of the others / mm",
+        ],
+        1,
+        rows.iter().map(|row| {
+            let left_out = row.left_out_wavelengths_mm.iter().map(|mm| number(*mm, 4));
+            vec![
+                row.waves.to_string(),
+                row.speed_mm_s.to_string(),
+                row.realisations.to_string(),
+                row.with_all_waves.to_string(),
+                left_out.collect::<Vec<_>>().join(", "),
+            ]
+        }),
+    )
+}

@@ -1,0 +1,167 @@
+//! Sections on the scans.
+
+use super::Report;
+use super::page::{absent, number, optional, percent, table};
+use crate::report::ReportError;
+use crate::report::read::rows;
+use crate::stages::Stage;
+use crate::stages::characterise::{AVERAGES_FILE, AverageRow, PARAMETERS_FILE, ParametersRow};
+use crate::stages::ingest::{
+    FAULTS_FILE, FaultRow, REPORT_FILE, ScanReportRow, WINDOWS_FILE, WindowRow,
+};
+use maud::{Markup, html};
+
+const NO_SCANS: &str = "This run has no scans: its recipe states the waves itself.";
+
+impl Report<'_> {
+    pub(super) fn input(&self) -> Result<Markup, ReportError> {
+        let Some(scans) = rows::<ScanReportRow>(self.run, "ingest", REPORT_FILE)? else {
+            return Ok(absent(NO_SCANS));
+        };
+        let faults = rows::<FaultRow>(self.run, "ingest", FAULTS_FILE)?.unwrap_or_default();
+        let windows = rows::<WindowRow>(self.run, "ingest", WINDOWS_FILE)?.unwrap_or_default();
+        let found: Vec<&FaultRow> = faults.iter().filter(|fault| fault.count > 0).collect();
+        let rejected: Vec<&WindowRow> = windows.iter().filter(|w| w.rejected.is_some()).collect();
+        let points: u64 = scans.iter().map(|scan| scan.points_read).sum();
+        Ok(html! {
+            (self.warnings(&[Stage::Ingest])?)
+            p { (scans.len()) " scans with " (points) " points came in; " (windows.len() - rejected.len())
+                " of " (windows.len()) " windows were kept." }
+            (scan_table(&scans))
+            @if found.is_empty() {
+                p { "No faults were found in the scans." }
+            } @else {
+                (fault_table(&found))
+            }
+            @if !rejected.is_empty() {
+                (table("Windows that were rejected", &["window", "missing", "why"], 3,
+                    rejected.iter().map(|w| vec![
+                        w.window.clone(), percent(w.missing_share), w.rejected.clone().unwrap_or_default(),
+                    ])))
+            }
+        })
+    }
+
+    pub(super) fn heights(&self) -> Result<Markup, ReportError> {
+        if !self.has(Stage::Ingest)? {
+            return Ok(absent(NO_SCANS));
+        }
+        let averages =
+            rows::<AverageRow>(self.run, "characterise", AVERAGES_FILE)?.unwrap_or_default();
+        let parameters =
+            rows::<ParametersRow>(self.run, "characterise", PARAMETERS_FILE)?.unwrap_or_default();
+        Ok(html! {
+            (self.figure("scans")?)
+            (self.figure("heights")?)
+            (self.doubt(&[Stage::Characterise]))
+            @if !averages.is_empty() {
+                (table("Roughness parameters, averages over the windows",
+                    &["parameter", "mean", "± 95 %", "standard deviation", "windows"], 1,
+                    averages.iter().map(|row| vec![
+                        row.parameter.clone(), number(row.mean, 4), optional(row.confidence_95, 2),
+                        optional(row.standard_deviation, 2), row.windows.to_string(),
+                    ])))
+            }
+            @if !parameters.is_empty() { (parameter_table(&parameters)) }
+        })
+    }
+}
+
+fn scan_table(scans: &[ScanReportRow]) -> Markup {
+    table(
+        "Scans as they came in",
+        &[
+            "scan",
+            "points",
+            "missing",
+            "absent",
+            "out of range",
+            "spikes",
+            "spacing / µm",
+            "largest deviation / µm",
+            "spacing used / µm",
+            "windows kept",
+            "windows rejected",
+        ],
+        1,
+        scans.iter().map(|scan| {
+            vec![
+                scan.scan.clone(),
+                scan.points_read.to_string(),
+                scan.points_missing.to_string(),
+                scan.points_absent.to_string(),
+                scan.points_out_of_range.to_string(),
+                scan.spikes.to_string(),
+                number(scan.raw_spacing_um, 4),
+                number(scan.largest_deviation_um, 2),
+                number(scan.spacing_um, 4),
+                scan.windows_kept.to_string(),
+                scan.windows_rejected.to_string(),
+            ]
+        }),
+    )
+}
+
+fn fault_table(faults: &[&FaultRow]) -> Markup {
+    table(
+        "Faults that were found and what was done with them",
+        &[
+            "scan",
+            "fault",
+            "decision",
+            "criterion",
+            "count",
+            "share of points",
+            "rms slope before",
+            "after",
+            "power of the shortest waves, after over before",
+        ],
+        4,
+        faults.iter().map(|fault| {
+            vec![
+                fault.scan.clone(),
+                fault.fault.clone(),
+                fault.decision.clone(),
+                fault.criterion.clone(),
+                fault.count.to_string(),
+                percent(fault.share),
+                optional(fault.rms_slope_before, 3),
+                optional(fault.rms_slope_after, 3),
+                optional(fault.high_frequency_ratio, 2),
+            ]
+        }),
+    )
+}
+
+fn parameter_table(rows: &[ParametersRow]) -> Markup {
+    table(
+        "Roughness parameters of each window",
+        &[
+            "window",
+            "Ra / mm",
+            "Rq / mm",
+            "Rp / mm",
+            "Rv / mm",
+            "Rt / mm",
+            "Rsk",
+            "Rku",
+            "rms slope",
+        ],
+        1,
+        rows.iter().map(|row| {
+            let values = [
+                row.ra_mm,
+                row.rq_mm,
+                row.rp_mm,
+                row.rv_mm,
+                row.rt_mm,
+                row.rsk,
+                row.rku,
+                row.rms_slope,
+            ];
+            let mut cells = vec![row.scan.clone()];
+            cells.extend(values.map(|value| number(value, 3)));
+            cells
+        }),
+    )
+}

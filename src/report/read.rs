@@ -1,0 +1,57 @@
+//! What figures and reports read of a run.
+
+use super::FigureError;
+use crate::artifact::{ArtifactError, Metadata, Row, RunView};
+use crate::stages::StageError;
+
+/// A figure or a report that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A result cannot be read.
+    #[error(transparent)]
+    Artifact(#[from] ArtifactError),
+    /// A result of a stage cannot be read.
+    #[error(transparent)]
+    Stage(#[from] StageError),
+    /// A figure cannot be drawn.
+    #[error("figure {name}: {source}")]
+    Figure {
+        /// Its name.
+        name: &'static str,
+        /// Why.
+        source: FigureError,
+    },
+    /// The folder has no results.
+    #[error("{folder} has no results of a run: `asperity run RECIPE --out {folder}` makes them")]
+    Empty {
+        /// The run folder.
+        folder: String,
+    },
+}
+
+/// The rows of a table, or none if the run has no such result.
+pub(super) fn rows<R: Row>(
+    run: &RunView,
+    stage: &str,
+    file: &str,
+) -> Result<Option<Vec<R>>, ReportError> {
+    Ok(table(run, stage, file)?.map(|(rows, _)| rows))
+}
+
+/// The rows of a table and its metadata, or none if the run has no such result.
+pub(super) fn table<R: Row>(
+    run: &RunView,
+    stage: &str,
+    file: &str,
+) -> Result<Option<(Vec<R>, Metadata)>, ReportError> {
+    if !has(run, stage, file)? {
+        return Ok(None);
+    }
+    Ok(Some(run.read_table(stage, file)?))
+}
+
+/// Whether a stage has that file.
+pub(super) fn has(run: &RunView, stage: &str, file: &str) -> Result<bool, ReportError> {
+    let manifest = run.stage_manifest(stage)?;
+    Ok(manifest.is_some_and(|manifest| manifest.output(file).is_some()))
+}
