@@ -8,7 +8,7 @@
 //! |---|---|
 //! | [`numerics`] | FFT-free mathematics: Krylov, interpolation, statistics; no physics, no files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
-//! | [`rubber`] | generalised Maxwell model and its file |
+//! | [`rubber`] | generalised Maxwell model, its file, its fit to measured moduli |
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
@@ -20,6 +20,7 @@
 //! | [`stages`] | one file a stage: parameters, row types, one function |
 //! | [`recipe`] | the TOML file that says what a run does |
 //! | [`pipeline`] | the one function that wires the stages |
+//! | [`mod@bench`] | work against precision, cost of growth |
 //! | [`report`] | tables and figures for people |
 //! | [`cli`] | arguments, progress bars, printing |
 //!
@@ -30,6 +31,7 @@
 //! are NaN and nothing else is.
 
 pub mod artifact;
+pub mod bench;
 pub mod cli;
 pub mod contact;
 pub mod fem;

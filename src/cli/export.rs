@@ -10,10 +10,11 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::last_run::LastRun;
 use super::output::{note, print, write_file};
+use super::run_folder;
 use crate::artifact::{RunView, data_frame as data_frame_of, write_csv, write_parquet};
 use crate::report::{
-    FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
-    markdown,
+    About, FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
+    markdown, workbook,
 };
 use crate::stages::Stage;
 use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE, cleaning_markdown};
@@ -30,6 +31,7 @@ Examples:
   All tables for a paper, as one Parquet table, and as a figure:
     asperity export runs/asphalt --format latex --to friction.tex
     asperity export runs/asphalt --format parquet --to friction.parquet
+    asperity export runs/asphalt --format xlsx --to friction.xlsx
     asperity export runs/asphalt --format svg --to friction.svg
   The local corrections of the hybrid method, one by one:
     asperity export runs/asphalt --table hybrid/local --format csv --to local.csv
@@ -47,7 +49,7 @@ pub(super) struct Export {
     /// Run folder.
     run: PathBuf,
     /// Format: csv and markdown and latex in the layout of the published tables, parquet as one
-    /// long table, svg as a figure with the 95 % confidence band.
+    /// long table, xlsx as a workbook with a sheet for each, svg as a figure with the 95 % confidence band.
     #[arg(long, value_enum)]
     format: Format,
     /// The computed tables beside the published ones that the recipe names, as a Markdown document.
@@ -82,6 +84,7 @@ enum Format {
     Markdown,
     Latex,
     Parquet,
+    Xlsx,
     Svg,
 }
 
@@ -91,14 +94,7 @@ impl Export {
     /// # Errors
     /// [`CliError`].
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
-        if !self.run.is_dir() {
-            let what = if self.run.exists() { "is a file" } else { "does not exist" };
-            return Err(CliError::input(format!(
-                "{} {what}: give the folder of a run, such as runs/asphalt",
-                self.run.display()
-            )));
-        }
-        let view = RunView::of(&self.run);
+        let view = run_folder::view(&self.run)?;
         if self.cleaning {
             return self.cleaning(&view, quiet);
         }
@@ -129,10 +125,18 @@ impl Export {
             )));
         }
         let tables = friction_tables(&rows);
+        let about = About::of(&view).map_err(CliError::input)?;
         match self.format {
             Format::Csv => self.csv(&tables),
-            Format::Markdown => self.text(&markdown(&tables, &self.rubber(&view))),
-            Format::Latex => self.text(&latex(&tables, &self.rubber(&view))),
+            Format::Markdown => self.text(&markdown(&tables, &about)),
+            Format::Latex => self.text(&latex(&tables, &about)),
+            Format::Xlsx => {
+                let Some(path) = &self.to else {
+                    return Err(CliError::input("a workbook is binary: give a file with --to"));
+                };
+                let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
+                write_file(path, self.force, |out| out.write_all(&bytes))
+            }
             Format::Svg => self.text(&friction_figure(&tables).map_err(CliError::failure)?),
             Format::Parquet => {
                 let Some(path) = &self.to else {
@@ -210,14 +214,6 @@ impl Export {
         let note = metadata.get(NOTE_KEY).map_or("", String::as_str);
         let realisations = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
         self.text(&comparison_markdown(note, &compared, realisations))
-    }
-
-    /// Name of the rubber, from the manifest of the contacts.
-    fn rubber(&self, view: &RunView) -> String {
-        let manifest = view.stage_manifest("bem").ok().flatten();
-        let name =
-            manifest.and_then(|m| m.parameters["rubber"]["name"].as_str().map(str::to_owned));
-        name.unwrap_or_else(|| "unknown".into())
     }
 
     fn text(&self, text: &str) -> Result<(), CliError> {

@@ -3,21 +3,29 @@
 //! Results go to standard output, everything else to standard error. Exit code 0 is success, 1 a
 //! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
 
+mod bench;
 mod convert;
 mod error;
 mod export;
+mod init;
 mod inspect;
 mod interrupt;
 mod last_run;
 mod output;
 mod plan;
+mod plot;
 mod progress;
 mod recipe_options;
+mod report;
+mod rubber;
 mod run;
+mod run_folder;
+mod shell;
 mod solve;
 mod status;
 mod synth;
 mod values;
+mod verify;
 
 pub use error::CliError;
 
@@ -37,17 +45,27 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Init(init::Init),
     Run(run::Run),
     Status(status::Status),
     #[command(name = "plan")]
     Plan(plan::PlanCommand),
     Export(export::Export),
+    Report(report::Report),
+    Plot(plot::Plot),
     /// Solve a single contact problem, without any recipe.
     #[command(subcommand)]
     Solve(solve::Solve),
+    /// Make a rubber from measured moduli.
+    #[command(subcommand)]
+    Rubber(rubber::Rubber),
     Synth(synth::Synth),
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
+    Verify(verify::Verify),
+    Bench(bench::Bench),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 impl Arguments {
@@ -61,10 +79,18 @@ impl Arguments {
             Command::Status(command) => command.run(),
             Command::Plan(command) => command.run(self.quiet),
             Command::Export(command) => command.run(self.quiet),
+            Command::Report(command) => command.run(self.quiet),
+            Command::Plot(command) => command.run(self.quiet),
             Command::Solve(command) => command.run(self.quiet),
+            Command::Rubber(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),
+            Command::Bench(command) => command.run(self.quiet),
+            Command::Init(command) => command.run(self.quiet),
+            Command::Verify(command) => command.run(),
+            Command::Completions(command) => command.run(),
+            Command::Man(command) => command.run(),
         }
     }
 }

@@ -4,9 +4,6 @@ use super::{Export, Format};
 use crate::artifact::{RunView, data_frame, write_csv};
 use crate::cli::CliError;
 use crate::report::{Study, study_figure};
-use crate::stages::sinusoid::{
-    AGREEMENT_FILE, ASYMPTOTES_FILE, PEAKS_FILE, POINTS_FILE, PRESSURES_FILE,
-};
 
 const STAGE: &str = "sinusoid";
 
@@ -23,7 +20,7 @@ impl Export {
             Format::Markdown => self.text(&read(view)?.markdown()),
             Format::Svg => self.text(&study_figure(&read(view)?).map_err(CliError::failure)?),
             Format::Csv => self.study_csv(view),
-            Format::Latex | Format::Parquet => {
+            Format::Latex | Format::Parquet | Format::Xlsx => {
                 Err(CliError::input("the study of one sine is exported as markdown, csv or svg"))
             }
         }
@@ -48,13 +45,5 @@ impl Export {
 }
 
 fn read(view: &RunView) -> Result<Study, CliError> {
-    let has_pressures = view.file(STAGE, PRESSURES_FILE).exists();
-    let points = |file| view.read_table(STAGE, file).map_err(CliError::input);
-    Ok(Study {
-        points: points(POINTS_FILE)?.0,
-        pressures: if has_pressures { points(PRESSURES_FILE)?.0 } else { Vec::new() },
-        asymptotes: view.read_table(STAGE, ASYMPTOTES_FILE).map_err(CliError::input)?.0,
-        peaks: view.read_table(STAGE, PEAKS_FILE).map_err(CliError::input)?.0,
-        agreement: view.read_table(STAGE, AGREEMENT_FILE).map_err(CliError::input)?.0,
-    })
+    Study::read(view).map_err(CliError::input)
 }
