@@ -33,8 +33,8 @@ pub enum LawEnd {
 pub struct LocalLaw {
     touch_separation: f64,
     logarithm: CubicHermite,
-    first: Sample,
-    last: Sample,
+    /// In the order of their pressures, at least one.
+    samples: Vec<Sample>,
     /// Logarithmic slope at the first sample.
     first_slope: f64,
     end: LawEnd,
@@ -71,7 +71,6 @@ impl LocalLaw {
     ) -> Result<Self, LawError> {
         check(touch_separation, pressures, separations)?;
         let indentations: Vec<f64> = separations.iter().map(|g| touch_separation - g).collect();
-        let sample = |k: usize| Sample { pressure: pressures[k], indentation: indentations[k] };
         let logarithms = |values: &[f64]| values.iter().map(|x| x.ln()).collect::<Vec<f64>>();
         let mut logarithm =
             CubicHermite::monotone_parabolas(logarithms(pressures), logarithms(&indentations));
@@ -84,8 +83,12 @@ impl LocalLaw {
         if end == LawEnd::FullContact {
             logarithm = logarithm.flat_at_the_end();
         }
-        let (first, last) = (sample(0), sample(pressures.len() - 1));
-        Ok(Self { touch_separation, logarithm, first, last, first_slope, end })
+        let samples = pressures
+            .iter()
+            .zip(&indentations)
+            .map(|(p, d)| Sample { pressure: *p, indentation: *d })
+            .collect();
+        Ok(Self { touch_separation, logarithm, samples, first_slope, end })
     }
 
     /// Separation g(0) at first touch in m.
@@ -95,7 +98,7 @@ impl LocalLaw {
 
     /// The largest sampled pressure in Pa.
     pub fn largest_pressure(&self) -> f64 {
-        self.last.pressure
+        self.last().pressure
     }
 
     /// Separation g in m at a pressure in Pa.
@@ -126,49 +129,66 @@ impl LocalLaw {
         if pressure.is_nan() || pressure < 0.0 {
             return Err(LawError::NotAPressure { pressure });
         }
-        let largest = self.last.pressure;
+        let largest = self.last().pressure;
         if pressure > largest && self.end == LawEnd::PartialContact {
             return Err(LawError::BeyondSamples { pressure, largest });
         }
         Ok(())
     }
 
+    fn first(&self) -> Sample {
+        self.samples[0]
+    }
+
+    fn last(&self) -> Sample {
+        self.samples[self.samples.len() - 1]
+    }
+
+    /// Indentation from the first sample to the last, reckoned from the sample before it: the
+    /// round-off of the logarithms themselves, 1e-14 of the indentation, is more than a solution
+    /// may lack where the law is 1e4 times deeper than the profile.
+    fn between_samples(&self, pressure: f64) -> f64 {
+        let piece = self.samples.partition_point(|s| s.pressure <= pressure) - 1;
+        let from = self.samples[piece];
+        from.indentation * self.logarithm.rise(piece, (pressure / from.pressure).ln()).exp()
+    }
+
     /// `g(0) - g(p)` in m; beyond the samples of a law in partial contact the last value, which
     /// serves an iteration on its way and no result.
     pub(super) fn indentation(&self, pressure: f64) -> f64 {
-        if pressure >= self.last.pressure {
-            self.last.indentation
-        } else if pressure >= self.first.pressure {
-            self.logarithm.at(pressure.ln()).exp()
+        if pressure >= self.last().pressure {
+            self.last().indentation
+        } else if pressure >= self.first().pressure {
+            self.between_samples(pressure)
         } else {
-            let s = pressure / self.first.pressure;
+            let s = pressure / self.first().pressure;
             let m = self.first_slope;
             let share = match s {
                 0.0 => 0.0,
                 _ if m > 1.0 => s.powf(m),
                 _ => s * (1.0 - (1.0 - m) * s.ln()),
             };
-            self.first.indentation * share
+            self.first().indentation * share
         }
     }
 
     /// `-dg/dp` in m/Pa.
     pub(super) fn compliance(&self, pressure: f64) -> f64 {
-        if pressure > self.last.pressure {
+        if pressure > self.last().pressure {
             return 0.0;
         }
-        if pressure >= self.first.pressure && self.first.pressure < self.last.pressure {
-            let log = pressure.ln();
-            return self.logarithm.derivative(log) * self.logarithm.at(log).exp() / pressure;
+        if pressure >= self.first().pressure && self.first().pressure < self.last().pressure {
+            return self.logarithm.derivative(pressure.ln()) * self.between_samples(pressure)
+                / pressure;
         }
-        let s = pressure / self.first.pressure;
+        let s = pressure / self.first().pressure;
         let m = self.first_slope;
         let share = match m {
             1.0 => 1.0,
             _ if m > 1.0 => m * s.powf(m - 1.0),
             _ => m - (1.0 - m) * s.ln(),
         };
-        self.first.indentation / self.first.pressure * share
+        self.first().indentation / self.first().pressure * share
     }
 
     /// The point of the law on the line `c p + d = s`, in m: every `s` has exactly one, since
@@ -179,10 +199,10 @@ impl LocalLaw {
         if s <= 0.0 {
             return LawPoint { pressure: 0.0, indentation: s, compliance: f64::INFINITY };
         }
-        let at_end = c * self.last.pressure + self.last.indentation;
+        let at_end = c * self.last().pressure + self.last().indentation;
         if s >= at_end {
-            let pressure = self.last.pressure + (s - at_end) / c;
-            return LawPoint { pressure, indentation: self.last.indentation, compliance: 0.0 };
+            let pressure = self.last().pressure + (s - at_end) / c;
+            return LawPoint { pressure, indentation: self.last().indentation, compliance: 0.0 };
         }
         let pressure = self.pressure_on_line(c, s, guess);
         // The larger part comes from the line, so that neither is a difference of equals.
@@ -192,7 +212,7 @@ impl LocalLaw {
 
     /// Newton's method in the logarithm of the pressure, kept within a shrinking bracket.
     fn pressure_on_line(&self, c: f64, s: f64, guess: f64) -> f64 {
-        let (mut lower, mut upper) = (0.0_f64, (s / c).min(self.last.pressure));
+        let (mut lower, mut upper) = (0.0_f64, (s / c).min(self.last().pressure));
         let mut pressure = if guess > 0.0 && guess < upper { guess } else { 0.5 * upper };
         for _ in 0..MOST_LINE_STEPS {
             let value = c * pressure + self.indentation(pressure);

@@ -20,6 +20,9 @@ pub(super) struct LayeredSpace<'a> {
 /// Levels of a blend, and the ratio of neighbouring ones as long as these suffice.
 const MOST_LEVELS: usize = 6;
 const RATIO: f64 = 6.0;
+/// A relative spread of compliances below this is none: on equal peaks it is round-off, and two
+/// levels that differ by it have no blend.
+const UNIFORM: f64 = 1e-9;
 
 impl<'a> LayeredSpace<'a> {
     /// Operator for the compliances at the points of a nonempty set.
@@ -30,7 +33,11 @@ impl<'a> LayeredSpace<'a> {
         let smallest = compliance.iter().map(total).fold(f64::INFINITY, f64::min);
         let largest = compliance.iter().map(total).fold(0.0_f64, f64::max);
         let spread = (largest / smallest).max(1.0);
-        let steps = (spread.ln() / RATIO.ln()).ceil().clamp(0.0, (MOST_LEVELS - 1) as f64);
+        let steps = if spread - 1.0 > UNIFORM {
+            (spread.ln() / RATIO.ln()).ceil().min((MOST_LEVELS - 1) as f64)
+        } else {
+            0.0
+        };
         let ratio = if steps > 0.0 { spread.powf(1.0 / steps) } else { 1.0 };
         let totals: Vec<f64> =
             (0..=steps as usize).map(|l| smallest * ratio.powi(l as i32)).collect();

@@ -1,7 +1,10 @@
 //! The local law and the contact under it, against exact results and slow direct solutions.
 
+use super::layer::LayeredSpace;
 use super::*;
 use crate::contact::SlidingContact;
+use crate::contact::half_space::HalfSpace;
+use crate::contact::preconditioner::SetOperator;
 use crate::rubber::Rubber;
 use crate::surface::{Wave, wave};
 use nalgebra::{DMatrix, DVector};
@@ -380,6 +383,54 @@ proptest! {
             solution.contact_points,
             solution.pressure.iter().filter(|p| **p > 0.0).count()
         );
+    }
+}
+
+/// The round-off of the law must not show: with indentations computed from the logarithms of
+/// pressure and indentation it was 1e-10 of what counts here, as much as a solution may lack.
+#[test]
+fn a_law_ten_thousand_times_deeper_than_the_profile_is_solved() {
+    let rubber = Rubber::table_2_1();
+    let heights: Vec<f64> =
+        (0..2048).map(|i| 1.09e-7 * (TAU * 17.0 * i as f64 / 2048.0).sin()).collect();
+    let pressures: Vec<f64> = (0..20).map(|i| 1e7 * 0.2_f64.powi(19 - i)).collect();
+    for exponent in [0.4, 0.9, 1.4, 1.9, 2.4] {
+        for depth in [1e-5, 1e-4, 1e-3] {
+            let indentation = |p: &f64| depth * (p / 1e7).powf(exponent);
+            let samples: Vec<f64> =
+                pressures.iter().copied().filter(|p| indentation(p) > 1e-12 * depth).collect();
+            let separations: Vec<f64> = samples.iter().map(|p| depth - indentation(p)).collect();
+            let law =
+                LocalLaw::new(depth, &samples, &separations, LawEnd::PartialContact).unwrap();
+            let mut contact = SoftContact::new(&rubber, 1.2e-3, PERIOD, &heights, law).unwrap();
+            for pressure in [1e5, 5.5e5, 3e6] {
+                let solution = contact.solve(pressure).unwrap();
+                assert!(solution.residual < 3e-11, "{exponent} {depth} {pressure}");
+            }
+        }
+    }
+}
+
+/// Compliances that differ by round-off had levels between which no blend was: not a number.
+#[test]
+fn a_layer_that_is_uniform_but_for_round_off_is_uniform() {
+    let rubber = Rubber::table_2_1();
+    let mut planner = realfft::RealFftPlanner::new();
+    let mut space = HalfSpace::new(&mut planner, &rubber, 1e-3, PERIOD, 64);
+    let set: Vec<u32> = (0..16).map(|i| 4 * i).collect();
+    let compliance = space.compliance_range().1;
+    let mut under = |other: f64| {
+        let mut compliances = vec![compliance; 16];
+        compliances[7] = other;
+        let mut layered = LayeredSpace::new(&mut space, &compliances);
+        let mut pressure = vec![0.0; 16];
+        layered.punch_on(&set, &mut pressure);
+        pressure
+    };
+    let uniform = under(compliance);
+    let nearly = under(compliance * (1.0 + 3.0 * f64::EPSILON));
+    for (a, b) in uniform.iter().zip(&nearly) {
+        approx::assert_relative_eq!(a, b, max_relative = 1e-8);
     }
 }
 

@@ -102,6 +102,22 @@ impl CubicHermite {
             + t * (3.0 * t - 2.0) * slope[i + 1]
     }
 
+    /// Value at `offset` beyond the point `piece` less the value there, which keeps small rises of
+    /// large values to the last digit; beyond the last point zero.
+    pub fn rise(&self, piece: usize, offset: f64) -> f64 {
+        if piece + 1 >= self.x.len() {
+            return 0.0;
+        }
+        let step = self.x[piece + 1] - self.x[piece];
+        let whole = self.y[piece + 1] - self.y[piece];
+        let t = offset / step;
+        let Some(slope) = &self.slope else {
+            return t * whole;
+        };
+        t * (t * (3.0 - 2.0 * t) * whole
+            + (1.0 - t) * step * ((1.0 - t) * slope[piece] - t * slope[piece + 1]))
+    }
+
     /// Value at `x`; beyond the ends the value of the end, since extrapolation is no data.
     pub fn at(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
@@ -185,6 +201,25 @@ fn limited_end_slope(near: f64, far: f64, secant_near: f64, secant_far: f64) -> 
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn the_rise_is_the_value_less_that_of_the_point_before() {
+        let (x, y) = (vec![0.0, 1.0, 4.0, 4.5], vec![1.0, 3.0, 9.0, 9.1]);
+        for rule in [CubicHermite::monotone_parabolas, CubicHermite::smooth, CubicHermite::linear] {
+            let curve = rule(x.clone(), y.clone());
+            for piece in 0..3 {
+                for share in [0.0, 0.2, 0.7, 1.0] {
+                    let offset = share * (x[piece + 1] - x[piece]);
+                    let there = curve.at(x[piece] + offset) - y[piece];
+                    approx::assert_abs_diff_eq!(curve.rise(piece, offset), there, epsilon = 1e-14);
+                }
+            }
+            assert_eq!(curve.rise(3, 0.1), 0.0);
+        }
+        // A rise of one millionth keeps its digits beside a value of a million.
+        let steep = CubicHermite::linear(vec![0.0, 1.0], vec![1e6, 1e6 + 1.0]);
+        assert_eq!(steep.rise(0, 1e-6), 1e-6);
+    }
 
     #[test]
     fn a_straight_line_is_exact() {
