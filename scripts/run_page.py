@@ -78,14 +78,19 @@ def differences(shown, printed):
     return list(difflib.unified_diff(shown, printed, "the page", "the output", lineterm=""))
 
 
-def images_that_differ(page, folder):
+def compare_images(page, folder, update):
+    """Images that the page shows and its blocks made; taken over on request."""
     for name in IMAGE.findall(page.read_text(encoding="utf-8")):
-        made = folder / name
-        if made.is_file() and made.read_bytes() != (page.parent / name).read_bytes():
-            yield name
+        made, shown = folder / name, page.parent / name
+        if not made.is_file():
+            continue
+        if update:
+            shutil.copyfile(made, shown)
+        elif not shown.is_file() or made.read_bytes() != shown.read_bytes():
+            raise SystemExit(f"run_page: {page.name}: {name} is not the image that the page makes")
 
 
-def run(page, folder, environment):
+def run(page, environment):
     names = {"__name__": "__main__"}
     found = blocks(page)
     if not found:
@@ -103,8 +108,6 @@ def run(page, folder, environment):
             compared += 1
             if wrong := differences(block["shown"], printed):
                 raise SystemExit("\n".join([*wrong, f"run_page: {where} shows other output"]))
-    for name in images_that_differ(page, folder):
-        raise SystemExit(f"run_page: {page.name}: {name} is not the image that the page makes")
     print(f"{page.name}: {len(found)} blocks ran, {compared} outputs are as shown")
 
 
@@ -114,6 +117,7 @@ def arguments():
     parser.add_argument("--programs", type=Path, help="folder to put first on the path")
     parser.add_argument("--copy", type=Path, nargs="*", default=[], help="folders to copy")
     parser.add_argument("--link", nargs="*", default=[], metavar="NAME=PATH", help="to link")
+    parser.add_argument("--update-images", action="store_true", help="take over what blocks made")
     return parser.parse_args()
 
 
@@ -134,7 +138,8 @@ def main():
             (folder / target).symlink_to(Path(source).resolve())
         os.chdir(folder)
         try:
-            run(page, folder, environment)
+            run(page, environment)
+            compare_images(page, folder, given.update_images)
         finally:
             os.chdir(page.parent)
 
