@@ -6,7 +6,8 @@ use std::io::{BufWriter, Cursor, Write};
 use std::path::Path;
 
 use polars::prelude::{
-    CsvWriter, DataFrame, IpcReader, ParquetWriter, PolarsError, SerReader, SerWriter,
+    Column, CsvWriter, DataFrame, DataType, IpcReader, ParquetWriter, PolarsError, SerReader,
+    SerWriter,
 };
 
 use super::ArtifactError;
@@ -25,12 +26,34 @@ pub fn data_frame(path: &Path) -> Result<DataFrame, ArtifactError> {
 }
 
 /// Writes a data frame as CSV with a header; floats with the fewest digits that read back to the
-/// same bits, absent values as nothing.
+/// same bits, absent values as nothing, lists as their values with blanks between them, since CSV
+/// has none.
 ///
 /// # Errors
-/// [`ArtifactError::Io`]; [`ArtifactError::Unwritable`] for a column of lists, which CSV has not.
+/// [`ArtifactError::Io`], [`ArtifactError::Unwritable`].
 pub fn write_csv(frame: &mut DataFrame, path: &Path) -> Result<(), ArtifactError> {
-    export(path, |file| CsvWriter::new(file).finish(frame))
+    export(path, |file| {
+        let columns = frame.columns().iter().map(without_lists).collect::<Result<_, _>>()?;
+        CsvWriter::new(file).finish(&mut DataFrame::new(frame.height(), columns)?)
+    })
+}
+
+/// The column, or the text of its lists of floats.
+fn without_lists(column: &Column) -> Result<Column, PolarsError> {
+    let DataType::List(_) = column.dtype() else {
+        return Ok(column.clone());
+    };
+    let mut cells: Vec<Option<String>> = Vec::with_capacity(column.len());
+    for list in column.list()?.series_iter() {
+        let text = list.map(|list| {
+            let values = list.f64()?.iter();
+            let words: Vec<String> =
+                values.map(|x| x.map_or(String::new(), |x| x.to_string())).collect();
+            Ok::<_, PolarsError>(words.join(" "))
+        });
+        cells.push(text.transpose()?);
+    }
+    Ok(Column::new(column.name().clone(), cells))
 }
 
 /// Writes a data frame as Parquet.

@@ -400,8 +400,7 @@ fn a_law_ten_thousand_times_deeper_than_the_profile_is_solved() {
             let samples: Vec<f64> =
                 pressures.iter().copied().filter(|p| indentation(p) > 1e-12 * depth).collect();
             let separations: Vec<f64> = samples.iter().map(|p| depth - indentation(p)).collect();
-            let law =
-                LocalLaw::new(depth, &samples, &separations, LawEnd::PartialContact).unwrap();
+            let law = LocalLaw::new(depth, &samples, &separations, LawEnd::PartialContact).unwrap();
             let mut contact = SoftContact::new(&rubber, 1.2e-3, PERIOD, &heights, law).unwrap();
             for pressure in [1e5, 5.5e5, 3e6] {
                 let solution = contact.solve(pressure).unwrap();

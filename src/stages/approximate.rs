@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Section `[approximate]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -236,6 +236,7 @@ pub fn run(
         let intervals = correlations.jackknife(&fit, &wavelengths).map_err(in_this)?;
         let beyond: Vec<String> = beyond.iter().map(ToString::to_string).collect();
         warnings.extend(beyond.iter().map(|warning| format!("{waves} waves: {warning}")));
+        warnings.extend(finer_than(waves, spacing, wavelengths[0]));
         warnings.extend(fit.sine_scales().iter().filter(|scale| scale.amplitude == 0.0).map(
             |scale| {
                 let wavelength_mm = scale.wavelength * 1e3;
@@ -256,6 +257,26 @@ pub fn run(
     context.pending.write_table(FITS_FILE, &fits, &metadata)?;
     context.pending.write_table(FITTED_FILE, &fitted, &metadata)?;
     Ok(warnings)
+}
+
+/// Lags below this share of the shortest wave tell of roughness that no wave stands for.
+const SHORTEST_LAG: f64 = 1.0 / 8.0;
+/// Lateral resolution that suits a shortest wave: two points on it leave lags of 0.4 waves.
+const RESOLUTION: f64 = 0.8;
+
+/// What a fit makes of a correlation that begins far below its shortest wave, all in m.
+fn finer_than(waves: u32, shortest_lag: f64, shortest_wave: f64) -> Option<String> {
+    // Round-off of a spacing that is just the share.
+    (shortest_lag < SHORTEST_LAG * shortest_wave * (1.0 - 1e-6)).then(|| {
+        format!(
+            "{waves} waves: the correlation begins at a lag of {:.4} mm, far below the shortest wave ({:.4} mm), \
+             which then stands for all finer roughness and is too steep; average that away with \
+             ingest.conditioning.lateral_resolution_um = {:.1}, or begin with shorter waves",
+            shortest_lag * 1e3,
+            shortest_wave * 1e3,
+            RESOLUTION * shortest_wave * 1e6
+        )
+    })
 }
 
 /// Writes the waves that the recipe states itself; there is no fit to report.

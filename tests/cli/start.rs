@@ -20,6 +20,8 @@ fn a_folder_for_scans_that_are_there_runs_at_once() {
     assert!(made.contains("asperity plan"), "{made}");
     let recipe = fs::read_to_string(project.join("recipe.toml")).unwrap();
     assert!(recipe.contains("waves = [8]") && recipe.contains("x_column = \"x_mm\""), "{recipe}");
+    // 2 µm between points, 62.5 µm the shortest wave.
+    assert!(recipe.contains("\nlateral_resolution_um = 50.0\n"), "{recipe}");
     // A tolerance that a test can wait for.
     fs::write(project.join("recipe.toml"), recipe.replace("tolerance = 0.1", "tolerance = 0.5"))
         .unwrap();
@@ -27,6 +29,21 @@ fn a_folder_for_scans_that_are_there_runs_at_once() {
     within(&project, "run recipe.toml --only characterise").result();
     within(&project, "run recipe.toml --only approximate").result();
     within(&project, "verify runs/recipe").result();
+
+    // Without the resolution the shortest wave would stand for all that is finer.
+    fs::write(project.join("recipe.toml"), recipe.replace("\nlateral_resolution_um", "\n#"))
+        .unwrap();
+    for stage in ["ingest", "characterise"] {
+        within(&project, &format!("run recipe.toml --only {stage}")).result();
+    }
+    let run = Outcome::of(binary().current_dir(&project).args([
+        "run",
+        "recipe.toml",
+        "--only",
+        "approximate",
+    ]));
+    assert_eq!(run.code, 0);
+    assert!(run.stderr.contains("lateral_resolution_um = 50.0, or begin"), "{}", run.stderr);
 }
 
 #[test]

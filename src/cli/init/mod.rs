@@ -35,6 +35,8 @@ missing = [\"BAD\"]
 const LADDER: (f64, u32) = (0.0625, 8);
 /// Points that the shortest wave needs.
 const POINTS_ON_SHORTEST: f64 = 8.0;
+/// Lateral resolution in shortest waves where the scan is finer: two points of it are 0.8 waves.
+const RESOLUTION: f64 = 0.8;
 /// A wave is told from a form by scans twice as long.
 const LENGTHS_IN_SCAN: f64 = 2.0;
 
@@ -61,7 +63,18 @@ struct FromScan {
     text_section: String,
     shortest_wavelength_mm: f64,
     waves: u32,
+    /// Where the scan is finer than the shortest wave needs.
+    lateral_resolution_um: Option<f64>,
     notes: Vec<String>,
+}
+
+impl FromScan {
+    fn resolution_line(&self) -> String {
+        match self.lateral_resolution_um {
+            Some(resolution) => format!("lateral_resolution_um = {resolution:?}"),
+            None => "# lateral_resolution_um = 50.0".into(),
+        }
+    }
 }
 
 impl Init {
@@ -82,6 +95,7 @@ impl Init {
             .replace("@SCANS@", &scans)
             .replace("@TEXT@\n", &format!("{}\n", found.text_section))
             .replace("@WAVES@", &format!("[{}]", found.waves))
+            .replace("@RESOLUTION@", &found.resolution_line())
             .replace("@SHORTEST@", &found.shortest_wavelength_mm.to_string());
         let path = folder.join("recipe.toml");
         let checked = Recipe::parse(&recipe, &path);
@@ -120,7 +134,13 @@ impl Init {
             let (shortest_wavelength_mm, waves) = LADDER;
             let text_section = TEXT.into();
             let notes = Vec::new();
-            let found = FromScan { text_section, shortest_wavelength_mm, waves, notes };
+            let found = FromScan {
+                text_section,
+                shortest_wavelength_mm,
+                waves,
+                lateral_resolution_um: None,
+                notes,
+            };
             return Ok(("[\"scans\"]".into(), found));
         };
         let absolute = |path: &PathBuf| {
@@ -184,6 +204,7 @@ fn from_scan(file: &Path) -> Result<FromScan, CliError> {
 /// The ladder of waves between what the spacing of a scan resolves and half its length.
 fn ladder(scan: Option<RawScan>, text_section: String, mut notes: Vec<String>) -> FromScan {
     let (mut shortest_wavelength_mm, mut waves) = LADDER;
+    let mut lateral_resolution_um = None;
     if let Some((spacing, length)) = scan.as_ref().and_then(extent) {
         while shortest_wavelength_mm < POINTS_ON_SHORTEST * spacing * 1e3 {
             shortest_wavelength_mm *= 2.0;
@@ -192,13 +213,16 @@ fn ladder(scan: Option<RawScan>, text_section: String, mut notes: Vec<String>) -
         let longest_mm = 1e3 * (length + spacing) / LENGTHS_IN_SCAN;
         let octaves = ((longest_mm / shortest_wavelength_mm).log2() + 1e-9).floor();
         waves = (octaves + 1.0).clamp(1.0, 12.0) as u32;
+        if POINTS_ON_SHORTEST * spacing * 1e3 < shortest_wavelength_mm * (1.0 - 1e-6) {
+            lateral_resolution_um = Some(RESOLUTION * shortest_wavelength_mm * 1e3);
+        }
         notes.push(format!(
             "the first scan is {:.1} mm long with {:.1} um between points: {waves} waves from {shortest_wavelength_mm} mm",
             length * 1e3,
             spacing * 1e6
         ));
     }
-    FromScan { text_section, shortest_wavelength_mm, waves, notes }
+    FromScan { text_section, shortest_wavelength_mm, waves, lateral_resolution_um, notes }
 }
 
 /// Mean spacing and length in m.
