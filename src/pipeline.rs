@@ -3,7 +3,9 @@
 
 mod plan;
 
-use crate::artifact::{ArtifactError, Identity, Manifest, RunFolder, RunView, SolveStore};
+use crate::artifact::{
+    ArtifactError, Identity, Manifest, RunFolder, RunView, SOLVES_FOLDER, SolveStore,
+};
 use crate::recipe::{Recipe, Violation, Work};
 use crate::stages::{
     Context, Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro,
@@ -16,7 +18,6 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Folder of single solves within a run folder.
-const SOLVES_FOLDER: &str = "solves";
 
 /// Why a stage without any result is stale.
 const NOT_COMPUTED: &str = "not computed yet";
@@ -166,7 +167,7 @@ pub fn run(
         context.check_interrupt().map_err(in_stage)?;
         let outputs = context.pending.outputs().to_vec();
         let seconds = start.elapsed().as_secs_f64();
-        let manifest = Manifest::new(&identity, outputs, warnings, seconds);
+        let manifest = Manifest::new(&identity, outputs, warnings, seconds)?;
         context.pending.commit(&manifest)?;
         observer(Event::Finished(stage, &manifest));
     }

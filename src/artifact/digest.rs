@@ -55,6 +55,20 @@ impl Digest {
         Self::of_bytes(text.as_bytes())
     }
 
+    /// The digest that a JSON document carries in its field `digest`: of all its other fields.
+    ///
+    /// # Errors
+    /// As [`Digest::of_json`].
+    pub fn seal_of(document: &impl Serialize) -> Result<Self, ArtifactError> {
+        let mut value = serde_json::to_value(document).map_err(|error| {
+            ArtifactError::NotRepresentable { what: "the value".into(), reason: error.to_string() }
+        })?;
+        if let Value::Object(fields) = &mut value {
+            fields.remove("digest");
+        }
+        Ok(Self::of_value(&value))
+    }
+
     pub(super) fn of_hasher(hasher: &blake3::Hasher) -> Self {
         Self(*hasher.finalize().as_bytes())
     }
@@ -110,9 +124,11 @@ impl FromStr for Digest {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        blake3::Hash::from_hex(text)
-            .map(|hash| Self(*hash.as_bytes()))
-            .map_err(|_| format!("`{text}` is no digest of 64 hexadecimal digits"))
+        // One text for each digest: a letter whose case has changed is damage.
+        let lower_case = !text.bytes().any(|byte| byte.is_ascii_uppercase());
+        let hash = blake3::Hash::from_hex(text).ok().filter(|_| lower_case);
+        hash.map(|hash| Self(*hash.as_bytes()))
+            .ok_or_else(|| format!("`{text}` is no digest of 64 lower-case hexadecimal digits"))
     }
 }
 

@@ -139,10 +139,12 @@ pub enum ArtifactError {
         found: u64,
     },
     /// Another process works in the folder.
-    #[error("another run is using {}: wait for it or choose another --out", .path.display())]
+    #[error("another run is using {}{}: wait for it or choose another --out", .path.display(), in_brackets(.holder))]
     Locked {
         /// The output folder.
         path: PathBuf,
+        /// What the other process says of itself, such as `process 4711`; may be empty.
+        holder: String,
     },
     /// The stage has not been run, or not to its end.
     #[error("{} holds no finished result of the stage `{stage}`: run it first", .path.display())]
@@ -217,6 +219,10 @@ impl ArtifactError {
         }
         Err(Self::Damaged { path: path.to_path_buf(), expected, found })
     }
+}
+
+fn in_brackets(holder: &str) -> String {
+    if holder.is_empty() { String::new() } else { format!(" ({holder})") }
 }
 
 /// What to do about the failures of the operating system that a user can mend.

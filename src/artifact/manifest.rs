@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::{Digest, TOOL_VERSION};
+use super::{ArtifactError, Digest, TOOL_VERSION};
 
 /// Schema name and version of one kind of output.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -113,24 +113,29 @@ pub struct Manifest {
     pub warnings: Vec<String>,
     /// Wall time of the stage in seconds.
     pub seconds: f64,
+    /// Digest of all other fields, to find damage of the manifest itself.
+    pub digest: Digest,
 }
 
 impl Manifest {
     /// Schema name of a manifest.
     pub const SCHEMA: &'static str = "asperity.manifest";
     /// Version of the manifest.
-    pub const VERSION: u32 = 1;
+    pub const VERSION: u32 = 2;
     /// File name of a manifest.
     pub const FILE: &'static str = "manifest.json";
 
     /// Manifest of a result that was computed for `identity`.
+    ///
+    /// # Errors
+    /// [`ArtifactError::NotRepresentable`] if it has no JSON form.
     pub fn new(
         identity: &Identity,
         outputs: Vec<Output>,
         warnings: Vec<String>,
         seconds: f64,
-    ) -> Self {
-        Self {
+    ) -> Result<Self, ArtifactError> {
+        let mut manifest = Self {
             schema: Self::SCHEMA.to_owned(),
             version: Self::VERSION,
             tool_version: TOOL_VERSION.to_owned(),
@@ -142,7 +147,10 @@ impl Manifest {
             outputs,
             warnings,
             seconds,
-        }
+            digest: Digest::of_bytes(&[]),
+        };
+        manifest.digest = Digest::seal_of(&manifest)?;
+        Ok(manifest)
     }
 
     /// The output of that file name.
@@ -222,9 +230,11 @@ mod tests {
             content_digest,
             size: 12,
         };
-        let manifest = Manifest::new(&identity(), vec![output], vec!["µ > 2".into()], 0.1 + 0.2);
+        let manifest =
+            Manifest::new(&identity(), vec![output], vec!["µ > 2".into()], 0.1 + 0.2).unwrap();
         let text = serde_json::to_string_pretty(&manifest).unwrap();
         assert_eq!(serde_json::from_str::<Manifest>(&text).unwrap(), manifest);
+        assert_eq!(Digest::seal_of(&manifest).unwrap(), manifest.digest);
         let input = manifest.input("solves.arrow").unwrap();
         assert_eq!((input.name.as_str(), input.digest), ("bem/solves.arrow", content_digest));
         assert_eq!(manifest.input("other.arrow"), None);

@@ -40,7 +40,7 @@ pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
 pub use schema::{ArraysSchema, AttributeSchema, DatasetSchema, arrays_schema};
 pub use schema::{check_or_write, table_schema};
 pub use solves::{SOLVE_SCHEMA, SolveStore, StoredSolve, read_stored_solve};
-pub use store::{Pending, RunFolder, RunView};
+pub use store::{Pending, RunFolder, RunView, SOLVES_FOLDER};
 pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
 
 /// Version of the tool that writes an artifact; recorded in every file and no part of any digest.

@@ -123,11 +123,13 @@ pub struct StoredSolve {
 /// Reads the file of a stored solve, intact or not.
 ///
 /// # Errors
-/// [`ArtifactError::Io`]; [`ArtifactError::Unreadable`] for a file of another kind.
+/// [`ArtifactError::Io`]; [`ArtifactError::Unreadable`], [`ArtifactError::WrongSchema`] or
+/// [`ArtifactError::WrongVersion`] for a file of another kind.
 pub fn read_stored_solve(path: &Path) -> Result<StoredSolve, ArtifactError> {
     let bytes = fs::read(path).map_err(ArtifactError::io("read", path))?;
     let entry: Entry = serde_json::from_slice(&bytes)
         .map_err(|error| ArtifactError::unreadable(path, "stored solve", error))?;
+    ArtifactError::check_schema(path, (&entry.schema, entry.version), (SOLVE_SCHEMA, VERSION))?;
     let intact = Digest::of_value(&entry.payload) == entry.digest_of_payload;
     Ok(StoredSolve { version: entry.version, key: entry.key, intact, payload: entry.payload })
 }

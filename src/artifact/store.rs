@@ -20,6 +20,8 @@ use super::{
     write_arrays, write_table,
 };
 
+/// Folder of the stored solves in a run folder.
+pub const SOLVES_FOLDER: &str = "solves";
 const LOCK_FILE: &str = ".lock";
 const PENDING_PREFIX: &str = ".tmp-";
 const REPLACED_PREFIX: &str = ".old-";
@@ -50,7 +52,7 @@ impl RunView {
     ///
     /// # Errors
     /// [`ArtifactError::Unreadable`] if it is no manifest, [`ArtifactError::WrongVersion`] if it
-    /// is one of another version, [`ArtifactError::Io`].
+    /// is one of another version, [`ArtifactError::Damaged`], [`ArtifactError::Io`].
     pub fn stage_manifest(&self, stage: &str) -> Result<Option<Manifest>, ArtifactError> {
         #[derive(Deserialize)]
         struct Header {
@@ -69,7 +71,9 @@ impl RunView {
         let header: Header = serde_json::from_slice(&bytes).map_err(unreadable)?;
         let found = (header.schema.as_str(), header.version);
         ArtifactError::check_schema(&path, found, (Manifest::SCHEMA, Manifest::VERSION))?;
-        serde_json::from_slice(&bytes).map(Some).map_err(unreadable)
+        let manifest: Manifest = serde_json::from_slice(&bytes).map_err(unreadable)?;
+        ArtifactError::check_digest(&path, manifest.digest, Digest::seal_of(&manifest)?)?;
+        Ok(Some(manifest))
     }
 
     /// Compares size and digest of every output with the manifest.
@@ -195,14 +199,24 @@ impl RunFolder {
         let path = path.into();
         fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
         let lock_path = path.join(LOCK_FILE);
-        let lock = File::create(&lock_path).map_err(ArtifactError::io("create", &lock_path))?;
+        let mut lock = File::options()
+            .create(true)
+            .truncate(false)
+            .read(true)
+            .write(true)
+            .open(&lock_path)
+            .map_err(ArtifactError::io("create", &lock_path))?;
         match lock_patiently(&lock) {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(ArtifactError::Locked { path }),
+            Err(TryLockError::WouldBlock) => {
+                let holder = io::read_to_string(&lock).unwrap_or_default();
+                return Err(ArtifactError::Locked { path, holder: holder.trim_end().to_owned() });
+            }
             Err(TryLockError::Error(error)) => {
                 return Err(ArtifactError::io("lock", &lock_path)(error));
             }
         }
+        sign(&mut lock).map_err(ArtifactError::io("write", &lock_path))?;
         clear_leftovers(&path)?;
         Ok(Self { view: RunView { path }, _lock: lock })
     }
@@ -222,7 +236,13 @@ impl RunFolder {
     }
 }
 
-/// Removes temporary folders. A replaced result goes as well, unless the kill came between moving
+/// Says in the lock who has it.
+fn sign(lock: &mut File) -> io::Result<()> {
+    lock.set_len(0)?;
+    writeln!(lock, "process {}", std::process::id())
+}
+
+/// Removes temporary folders, and temporary files of stored solves. A replaced result goes as well, unless the kill came between moving
 /// it aside and moving the new one into place; then it is put back.
 fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
     for entry in fs::read_dir(run).map_err(ArtifactError::io("read", run))? {
@@ -234,6 +254,25 @@ fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
             }
             None if !name.starts_with(PENDING_PREFIX) => {}
             _ => remove(&path)?,
+        }
+    }
+    clear_solves(&run.join(SOLVES_FOLDER))
+}
+
+/// Only with the lock: another process may be writing otherwise.
+fn clear_solves(store: &Path) -> Result<(), ArtifactError> {
+    let entries = |path: &Path| match fs::read_dir(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        read => read
+            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect())
+            .map_err(ArtifactError::io("read", path)),
+    };
+    for folder in entries(store)?.into_iter().filter(|path| path.is_dir()) {
+        for path in entries(&folder)? {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if name.starts_with(PENDING_PREFIX) {
+                remove(&path)?;
+            }
         }
     }
     Ok(())

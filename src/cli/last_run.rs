@@ -10,14 +10,11 @@ use serde::{Deserialize, Serialize};
 use super::CliError;
 use super::output::{json, write_file};
 use super::recipe_options::{with_scans, with_tolerance};
-use crate::artifact::{RunView, TOOL_VERSION};
+use crate::artifact::{Digest, RunView, TOOL_VERSION};
 use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::report::html::Origin;
 use crate::stages::Stage;
-
-/// Beside the folders of the stages; no result.
-const FILE: &str = "last_run.json";
 
 /// What `asperity run` was given, as absolute paths.
 #[derive(Debug, Serialize, Deserialize)]
@@ -36,13 +33,19 @@ pub(super) struct LastRun {
     /// Number of threads.
     #[serde(default)]
     threads: Option<usize>,
+    /// Of all other fields, to find damage.
+    digest: Digest,
 }
 
 impl LastRun {
+    /// Beside the folders of the stages; no result.
+    pub(super) const FILE: &str = "last_run.json";
+
     /// # Errors
     /// [`CliError::Failure`] if the working folder is not known.
     pub(super) fn new(
         recipe: &Path,
+        text: String,
         scans: &[PathBuf],
         tolerance: Option<f64>,
     ) -> Result<Self, CliError> {
@@ -52,23 +55,46 @@ impl LastRun {
             recipe: absolute(recipe)?,
             scans,
             tolerance,
-            // A recipe that cannot be read any more does not spoil a run that is done.
-            text: std::fs::read_to_string(recipe).ok(),
+            text: Some(text),
             tool_version: Some(TOOL_VERSION.to_owned()),
-            threads: Some(rayon::current_num_threads()),
+            threads: None,
+            digest: Digest::of_bytes(&[]),
         })
     }
 
     /// # Errors
     /// [`CliError::Failure`] if it cannot be written.
-    pub(super) fn write(&self, out: &Path) -> Result<(), CliError> {
-        let text = json(self)?;
-        write_file(&out.join(FILE), true, |out: &mut dyn Write| out.write_all(text.as_bytes()))
+    pub(super) fn write(mut self, out: &Path) -> Result<(), CliError> {
+        // Known once the pool of threads is.
+        self.threads = Some(rayon::current_num_threads());
+        self.digest = Digest::seal_of(&self).map_err(CliError::failure)?;
+        let text = json(&self)?;
+        write_file(&out.join(Self::FILE), true, |out: &mut dyn Write| {
+            out.write_all(text.as_bytes())
+        })
     }
 
-    /// None where no run left one that can be read.
+    /// None where no run left one that is whole.
     pub(super) fn read(out: &Path) -> Option<Self> {
-        serde_json::from_slice(&std::fs::read(out.join(FILE)).ok()?).ok()
+        Self::whole(&std::fs::read(out.join(Self::FILE)).ok()?).ok()
+    }
+
+    /// Whether the one in the folder is whole, or what is wrong with it; none if there is none.
+    pub(super) fn state(out: &Path) -> Option<Result<(), String>> {
+        let path = out.join(Self::FILE);
+        if !path.exists() {
+            return None;
+        }
+        let whole = std::fs::read(&path)
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| Self::whole(&bytes));
+        Some(whole.map(drop).map_err(|reason| format!("{}: {reason}", path.display())))
+    }
+
+    fn whole(bytes: &[u8]) -> Result<Self, String> {
+        let read: Self = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
+        let digest = Digest::seal_of(&read).map_err(|error| error.to_string())?;
+        if digest == read.digest { Ok(read) } else { Err("damaged".into()) }
     }
 
     /// Where the results of a run come from, for its report.

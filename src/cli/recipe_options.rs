@@ -33,16 +33,20 @@ impl RecipeOptions {
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn recipe(&self) -> Result<Recipe, CliError> {
-        let recipe = with_scans(Recipe::read(&self.recipe)?, &self.recipe, &self.scans)?;
-        with_tolerance(recipe, self.tolerance)
+        Ok(self.recipe_and_origin()?.0)
     }
 
-    /// What was given, to be kept with the results.
+    /// The same, and what was given, to be kept with the results: both from one reading of the
+    /// file, which may be edited while it runs.
     ///
     /// # Errors
-    /// [`CliError::Failure`].
-    pub(super) fn last_run(&self) -> Result<LastRun, CliError> {
-        LastRun::new(&self.recipe, &self.scans, self.tolerance)
+    /// [`CliError::Input`]; [`CliError::Failure`] if the working folder is not known.
+    pub(super) fn recipe_and_origin(&self) -> Result<(Recipe, LastRun), CliError> {
+        let text = std::fs::read_to_string(&self.recipe)
+            .map_err(|source| RecipeError::Read { path: self.recipe.clone(), source })?;
+        let recipe = with_scans(Recipe::parse(&text, &self.recipe)?, &self.recipe, &self.scans)?;
+        let recipe = with_tolerance(recipe, self.tolerance)?;
+        Ok((recipe, LastRun::new(&self.recipe, text, &self.scans, self.tolerance)?))
     }
 
     /// The run folder.
@@ -113,6 +117,7 @@ impl From<PipelineError> for CliError {
                     | StageError::Conditioning(_)
                     | StageError::NoScans { .. }
                     | StageError::ScanIo { .. }
+                    | StageError::ScanChanged { .. }
                     | StageError::ReservedName { .. }
                     | StageError::SameName { .. }
                     | StageError::UnequalScans { .. }

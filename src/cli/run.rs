@@ -70,7 +70,7 @@ impl Run {
     /// # Errors
     /// [`CliError`].
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
-        let recipe = self.recipe.recipe()?;
+        let (recipe, last_run) = self.recipe.recipe_and_origin()?;
         if let Some(threads) = self.threads {
             if threads == 0 {
                 return Err(CliError::input("--threads is 0: give at least 1"));
@@ -116,7 +116,7 @@ impl Run {
                 note(quiet, "what is done is kept: the same command continues");
             }
         })?;
-        self.recipe.last_run()?.write(&out)?;
+        last_run.write(&out)?;
         if self.json {
             let stages = summaries.into_inner().unwrap_or_default();
             return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);

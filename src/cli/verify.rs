@@ -7,8 +7,10 @@ use clap::Args;
 use serde::Serialize;
 
 use super::CliError;
+use super::last_run::LastRun;
 use super::output::{json, print};
-use crate::artifact::{Manifest, RunView, read_stored_solve};
+use crate::artifact::{Manifest, RunView, SOLVES_FOLDER, read_stored_solve};
+use crate::stages::Stage;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -45,7 +47,12 @@ impl Verify {
     /// [`CliError::Input`] for a folder without results, [`CliError::Failure`] for damaged ones.
     pub(super) fn run(self) -> Result<(), CliError> {
         let mut findings = stages(&self.run)?;
-        findings.extend(solves(&self.run.join("solves"))?);
+        findings.extend(LastRun::state(&self.run).map(|damaged| Finding {
+            name: LastRun::FILE.into(),
+            files: 1,
+            damaged: damaged.err().into_iter().collect(),
+        }));
+        findings.extend(solves(&self.run.join(SOLVES_FOLDER))?);
         if findings.is_empty() {
             return Err(CliError::input(format!(
                 "{} holds no result: give the folder of a run, such as runs/asphalt",
@@ -74,12 +81,12 @@ fn text(findings: &[Finding]) -> String {
     findings.iter().map(line).collect()
 }
 
-/// The folders with a manifest, by name.
+/// The stages that have a folder, by name.
 fn stages(run: &Path) -> Result<Vec<Finding>, CliError> {
     let mut findings = Vec::new();
     for folder in folders(run)? {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if !folder.join(Manifest::FILE).is_file() {
+        if !Stage::CHAIN.iter().chain([&Stage::Sinusoid]).any(|stage| stage.name() == name) {
             continue;
         }
         let view = RunView::of(run);
@@ -90,7 +97,10 @@ fn stages(run: &Path) -> Result<Vec<Finding>, CliError> {
                 let damaged = damaged.map(|error| error.to_string()).collect();
                 Finding { name, files: manifest.outputs.len() + 1, damaged }
             }
-            Ok(None) => continue,
+            Ok(None) => {
+                let missing = format!("{}: missing", folder.join(Manifest::FILE).display());
+                Finding { name, files: 0, damaged: vec![missing] }
+            }
             Err(error) => Finding { name, files: 1, damaged: vec![error.to_string()] },
         };
         findings.push(finding);
@@ -103,7 +113,7 @@ fn solves(store: &Path) -> Result<Option<Finding>, CliError> {
     if !store.is_dir() {
         return Ok(None);
     }
-    let mut finding = Finding { name: "solves".into(), files: 0, damaged: Vec::new() };
+    let mut finding = Finding { name: SOLVES_FOLDER.into(), files: 0, damaged: Vec::new() };
     for folder in folders(store)? {
         for path in entries(&folder)? {
             if path.extension().is_none_or(|extension| extension != "json") {

@@ -18,7 +18,7 @@ use crate::artifact::{
 use crate::recipe::{Violation, demand};
 use crate::scans::file::{Grid, MapLines, parse_file};
 use crate::scans::text_shape::TextShape;
-use crate::scans::{TextFormat, parse_text};
+use crate::scans::{TextFormat, admit_size, parse_text, read_bytes};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use faults::fault_rows;
 use picture::write_pictures;
@@ -234,10 +234,20 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
     files
         .into_par_iter()
         .map(|path| {
+            admit(&path).map_err(|source| StageError::ScanIo { path: path.clone(), source })?;
             let digest = Digest::of_file(&path)?;
             Ok(ScanFile { name: scan_name(&path), digest, path })
         })
         .collect()
+}
+
+/// Before anything is read: a device may have no end, a large file takes long to digest.
+fn admit(path: &Path) -> std::io::Result<()> {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(std::io::Error::other("this is no plain file, which is read twice"));
+    }
+    admit_size(metadata.len())
 }
 
 fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
@@ -300,8 +310,11 @@ pub fn run(
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
-            let bytes = std::fs::read(&file.path)
+            let bytes = read_bytes(&file.path)
                 .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
+            if Digest::of_bytes(&bytes) != file.digest {
+                return Err(StageError::ScanChanged { path: file.path.clone() });
+            }
             let ReadFile { scans, is_text, contradictions } = read_scans(ingest, file, &bytes)?;
             let scans = scans
                 .iter()

@@ -170,6 +170,12 @@ pub enum StageError {
         /// Why.
         source: std::io::Error,
     },
+    /// A scan file is another than at the start of the run.
+    #[error("{}: the file changed while the run was reading it; run again", .path.display())]
+    ScanChanged {
+        /// The file.
+        path: PathBuf,
+    },
     /// The stored solves cannot be removed.
     #[error("cannot remove {}: {source}", path.display())]
     RemoveSolves {

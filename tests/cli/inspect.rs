@@ -77,7 +77,8 @@ fn run() -> TempDir {
         )
         .unwrap();
     let manifest =
-        Manifest::new(&identity, pending.outputs().to_vec(), vec!["one is coarse".into()], 1.5);
+        Manifest::new(&identity, pending.outputs().to_vec(), vec!["one is coarse".into()], 1.5)
+            .unwrap();
     pending.commit(&manifest).unwrap();
     folder
 }

@@ -2,6 +2,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/outcome.rs"]
+mod outcome;
 
 mod bench;
 mod campaign;
@@ -14,43 +16,9 @@ mod solve_fem;
 mod start;
 mod synth;
 
+use outcome::Outcome;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-/// What a run of the binary gave.
-struct Outcome {
-    code: i32,
-    stdout: String,
-    stderr: String,
-}
-
-impl Outcome {
-    fn of(command: &mut Command) -> Self {
-        let output = command.output().unwrap();
-        Self {
-            code: output.status.code().unwrap(),
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-        }
-    }
-
-    /// Standard output of a success that has nothing to complain about.
-    fn result(self) -> String {
-        assert_eq!((self.code, self.stderr.as_str()), (0, ""));
-        self.stdout
-    }
-
-    fn json(self) -> serde_json::Value {
-        serde_json::from_str(&self.result()).unwrap()
-    }
-
-    /// Standard error of a failure, which must not print a result.
-    fn error(self, code: i32) -> String {
-        assert_eq!((self.code, self.stdout.as_str()), (code, ""), "{}", self.stderr);
-        assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
-        self.stderr
-    }
-}
 
 fn binary() -> Command {
     Command::new(assert_cmd::cargo::cargo_bin!("asperity"))

@@ -3,6 +3,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/digests.rs"]
+mod digests;
 
 mod bem;
 mod changes;
@@ -19,12 +21,11 @@ mod sinusoid;
 mod theories;
 mod waves;
 
-use asperity::artifact::{Digest, RunView};
 use asperity::pipeline::{self, PipelineError, Selection, State};
 use asperity::recipe::Recipe;
 use asperity::stages::Stage;
 use common::Campaign;
-use std::collections::BTreeMap;
+use digests::digests;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -64,19 +65,6 @@ fn stale(recipe: &Recipe, out: &Path) -> Vec<(Stage, String)> {
         .filter_map(|(stage, state)| match state {
             State::Fresh => None,
             State::Stale(reasons) => Some((stage, reasons.join("; "))),
-        })
-        .collect()
-}
-
-/// Content digests of all files of all finished stages.
-fn digests(out: &Path) -> BTreeMap<String, Digest> {
-    let view = RunView::of(out);
-    let stages = Stage::CHAIN.iter().chain([&Stage::Sinusoid]);
-    let manifests = stages.filter_map(|s| view.stage_manifest(s.name()).unwrap());
-    manifests
-        .flat_map(|m| {
-            let name = move |file: &str| format!("{}/{file}", m.stage);
-            m.outputs.clone().into_iter().map(move |o| (name(&o.file), o.content_digest))
         })
         .collect()
 }

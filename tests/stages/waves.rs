@@ -47,7 +47,7 @@ fn commit<T>(
         inputs: Vec::new(),
     };
     let outputs = context.pending.outputs().to_vec();
-    context.pending.commit(&Manifest::new(&identity, outputs, Vec::new(), 0.0))?;
+    context.pending.commit(&Manifest::new(&identity, outputs, Vec::new(), 0.0)?)?;
     Ok(result)
 }
 

@@ -37,7 +37,7 @@ fn run_stage(run: &RunFolder, revision: u32) {
     let mut pending = run.begin("bem").unwrap();
     fill(&mut pending);
     let outputs = pending.outputs().to_vec();
-    let manifest = Manifest::new(&identity(revision), outputs, Vec::new(), 1.0);
+    let manifest = Manifest::new(&identity(revision), outputs, Vec::new(), 1.0).unwrap();
     pending.commit(&manifest).unwrap();
 }
 

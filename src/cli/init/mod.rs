@@ -9,8 +9,8 @@ use super::CliError;
 use super::output::{note, print, write_file};
 use crate::recipe::Recipe;
 use crate::scans::file::{Family, MapLines, parse_file};
-use crate::scans::parse_text;
 use crate::scans::text_shape::TextShape;
+use crate::scans::{parse_text, read_bytes};
 use crate::surface::RawScan;
 
 /// The recipe with marks for what depends on the scans.
@@ -175,7 +175,7 @@ fn first_file(path: &Path) -> Result<PathBuf, CliError> {
 }
 
 fn from_scan(file: &Path) -> Result<FromScan, CliError> {
-    let bytes = fs::read(file)
+    let bytes = read_bytes(file)
         .map_err(|error| CliError::input(format!("cannot read {}: {error}", file.display())))?;
     if Family::detect(&bytes).is_some() {
         let name = file.display().to_string();

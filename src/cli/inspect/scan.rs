@@ -10,7 +10,7 @@ use crate::cli::output::{aligned, significant};
 use crate::cli::{CliError, values};
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
 use crate::scans::text_shape::TextShape;
-use crate::scans::{TextFormat, read_text};
+use crate::scans::{TextFormat, read_bytes, read_text};
 use crate::surface::RawScan;
 use crate::surface::faults::merge_repeated;
 use crate::surface::resample::place_on_grid;
@@ -136,7 +136,7 @@ impl ScanOptions {
             foreign(path, &problem)
         })?;
         let scan = read_text(path, &format).map_err(CliError::input)?;
-        let shape = std::fs::read(path).ok().and_then(|bytes| TextShape::of(&bytes));
+        let shape = read_bytes(path).ok().and_then(|bytes| TextShape::of(&bytes));
         let contradictions = shape.map(|shape| shape.contradictions(&format)).unwrap_or_default();
         Ok(Scan { contradictions, ..Scan::of(path, scan) })
     }

@@ -66,7 +66,7 @@ impl TextShape {
     /// # Errors
     /// [`CliError::Input`] for a file that cannot be read or holds no columns of numbers.
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
-        let bytes = std::fs::read(path)
+        let bytes = crate::scans::read_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         let shape = text_shape::TextShape::of(&bytes)
             .ok_or_else(|| foreign(path, "is text without lines of numbers: no scan"))?;

@@ -205,7 +205,7 @@ fn spacing(place: Place, metres: f64) -> Result<f64, FileProblem> {
 /// # Errors
 /// [`FileError`] with the path, the place and what was expected there.
 pub fn read_file(path: &Path) -> Result<Option<ScanFile>, FileError> {
-    let bytes = std::fs::read(path)
+    let bytes = super::read_bytes(path)
         .map_err(|error| FileError { file: path.display().to_string(), problem: error.into() })?;
     parse_file("", &bytes).map_err(|error| error.in_file(path))
 }
