@@ -17,8 +17,6 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Folder of single solves within a run folder.
-
 /// Why a stage without any result is stale.
 const NOT_COMPUTED: &str = "not computed yet";
 

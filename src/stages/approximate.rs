@@ -260,7 +260,7 @@ pub fn run(
 }
 
 /// Lags below this share of the shortest wave tell of roughness that no wave stands for.
-const SHORTEST_LAG: f64 = 1.0 / 8.0;
+const SHORTEST_LAG: f64 = 1.0 / 16.0;
 /// Lateral resolution that suits a shortest wave: two points on it leave lags of 0.4 waves.
 const RESOLUTION: f64 = 0.8;
 

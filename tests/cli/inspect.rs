@@ -156,7 +156,7 @@ fn folders_and_manifests_show_the_files_and_their_state() {
     assert_eq!(json["states"], json!(["intact", "missing"]));
 
     let manifest = asperity_at("inspect {}", &in_bem(&run, "manifest.json")).result();
-    contains_all(&manifest, &["asperity.manifest version 1", "fields.h5", "speeds_mm_s"]);
+    contains_all(&manifest, &["asperity.manifest version 2", "fields.h5", "speeds_mm_s"]);
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn truncated_and_foreign_files_are_named() {
         (b"\x7fELF\0\0", "is none of Arrow table"),
         (
             b"{\"schema\": \"asperity.manifest\", \"version\": 9}",
-            "version 9, this tool reads version 1",
+            "version 9, this tool reads version 2",
         ),
         (
             b"{\"schema\": \"asperity.recipe\", \"version\": 1}",

@@ -144,7 +144,8 @@ fn a_second_run_in_the_same_folder_says_so_and_ends() {
     let output = campaign.command("run recipe.toml --out out").output().unwrap();
     assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0));
     let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("another run is using out: wait for it or choose another --out"));
+    let holder = format!("(process {})", std::process::id());
+    assert!(message.contains(&format!("using out {holder}: wait for it or choose another --out")));
     drop(lock);
     assert!(campaign.command("run recipe.toml --out out").output().unwrap().status.success());
 }
