@@ -1,28 +1,51 @@
 //! Hysteretic rubber friction on asphalt, from profilometer scans to tables with an error bar.
 //!
 //! ```text
-//! scans ─ ingest ─ characterise ─ approximate ─ realise ─ bem ─ tables
+//! scans ─ ingest ─ characterise ─ approximate ─ realise ─ bem ─ micro ─ hybrid ─ tables
 //! ```
+//!
+//! Nothing of the mechanics needs the pipeline or a file. Three programs in `examples/` show the ways in: one contact
+//! problem (`one_contact`), a rubber of one's own (`custom_rubber`), results of a run in polars (`stage_results`).
+//!
+//! ```
+//! use asperity::contact::SlidingContact;
+//! use asperity::rubber::Rubber;
+//! use asperity::surface::{Wave, wave};
+//!
+//! let period = 0.0625e-3;
+//! let profile = wave::sample(&[Wave { wavelength: period, amplitude: 2e-6, phase: 0.0 }], period, 256);
+//! let mut contact = SlidingContact::new(&Rubber::table_2_1(), 0.01, period, &profile)?; // 10 mm/s
+//! let solution = contact.solve(2e5)?; // 0.2 MPa
+//! assert!(solution.residual < 1e-10);
+//! println!("{} at area {}", solution.friction_coefficient, solution.contact_area_fraction);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! **Mechanics and roughness**, numbers in, numbers out:
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`numerics`] | FFT-free mathematics: Krylov, interpolation, statistics; no physics, no files |
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
 //! | [`rubber`] | generalised Maxwell model, its file, its fit to measured moduli |
-//! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
 //! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
+//! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
+//! | [`numerics`] | mathematics without physics: Krylov, interpolation, statistics |
+//!
+//! **Files and results**:
+//!
+//! | module | what it holds |
+//! |---|---|
 //! | [`scans`] | readers of instrument files: bytes in, scan or error out |
 //! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
-//! | [`schemas`] | the documents in `schemas/` |
 //! | [`stages`] | one file a stage: parameters, row types, one function |
 //! | [`recipe`] | the TOML file that says what a run does |
 //! | [`pipeline`] | the one function that wires the stages |
-//! | [`mod@bench`] | work against precision, cost of growth |
 //! | [`report`] | tables and figures for people |
-//! | [`cli`] | arguments, progress bars, printing |
+//!
+//! The rest (`cli`, `bench`, `forecast`, `schemas`) is the program, public for its own binary, tests and benchmarks.
 //!
 //! # Conventions
 //! SI in memory (m, Pa, s, rad); mm, MPa and mm/s at the edges only, always with the unit in the
@@ -31,10 +54,13 @@
 //! are NaN and nothing else is.
 
 pub mod artifact;
+#[doc(hidden)]
 pub mod bench;
+#[doc(hidden)]
 pub mod cli;
 pub mod contact;
 pub mod fem;
+#[doc(hidden)]
 pub mod forecast;
 pub mod multiscale;
 pub mod numerics;
@@ -44,6 +70,7 @@ pub mod reference;
 pub mod report;
 pub mod rubber;
 pub mod scans;
+#[doc(hidden)]
 pub mod schemas;
 pub mod stages;
 pub mod surface;
