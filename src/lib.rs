@@ -74,4 +74,5 @@ pub mod scans;
 pub mod schemas;
 pub mod stages;
 pub mod surface;
+pub mod sweep;
 pub mod theory;
