@@ -1,12 +1,12 @@
 //! From the solves of all shards to the tables of all cases.
 
 use super::layout::{Layout, RECIPE_FILE, write_by_rename};
-use super::plan::{PlannedTask, ShardTasks, SweepPlan};
-use super::prepare::of_case;
+use super::plan::{PlannedTask, ShardTasks, SweepPlan, Wanted};
+use super::prepare::{of_case, scan_digests, scans};
 use super::table::{FRICTION_FILE, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
-    Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore, TOOL_VERSION,
+    Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore, TOOL_VERSION,
 };
 use crate::pipeline::{self, Event, Selection};
 use crate::recipe::{Case, Recipe};
@@ -15,6 +15,7 @@ use crate::stages::{Stage, Watch, schema_of};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -31,8 +32,27 @@ pub struct ShardState {
     pub shard: usize,
     /// Its tasks.
     pub tasks: usize,
-    /// Those whose solves are not there, and why in words.
-    pub missing: Vec<String>,
+    /// Those whose solves are not there.
+    pub missing: Vec<MissingTask>,
+}
+
+/// A task whose solves are not there.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MissingTask {
+    /// Folder of the case that wants it, the first of several.
+    pub case: String,
+    /// What it is.
+    pub task: String,
+    /// Why its solves count as missing.
+    pub why: String,
+    /// Digest under which they are kept.
+    pub problem: Digest,
+}
+
+impl std::fmt::Display for MissingTask {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{}, {}: {}", self.case, self.task, self.why)
+    }
 }
 
 /// Looks up the solves of every task of the plan at `path`.
@@ -53,20 +73,20 @@ pub fn states(path: &Path, plan: &SweepPlan) -> Result<Vec<ShardState>, SweepErr
 }
 
 /// Why the solves of a task are not there; none if they are.
-fn missing(planned: &PlannedTask, cases: &[Case], store: &SolveStore) -> Option<String> {
-    let why = match store.pack_info(&planned.problem) {
-        Ok(None) => "not solved".into(),
-        Ok(Some(pack)) if pack.tool_version != TOOL_VERSION => format!(
-            "solved by asperity {}, this is {TOOL_VERSION}: {}",
-            pack.tool_version,
-            store.pack_path(&planned.problem).display()
-        ),
-        Ok(Some(pack)) if pack.finished.contains(&planned.key) => return None,
-        Ok(Some(_)) => "not finished".into(),
-        Err(error) => error.to_string(),
-    };
+fn missing(planned: &PlannedTask, cases: &[Case], store: &SolveStore) -> Option<MissingTask> {
+    let why =
+        refusal(&planned.problem, store).or_else(|| match store.pack_info(&planned.problem) {
+            Ok(Some(pack)) if pack.finished.contains(&planned.key) => None,
+            Ok(Some(_)) => Some("not finished".into()),
+            _ => Some("not solved".into()),
+        })?;
     let case = cases.get(planned.case).map(|case| case.folder.display().to_string());
-    Some(format!("{}, {}: {why}", case.unwrap_or_default(), planned.task.name()))
+    Some(MissingTask {
+        case: case.unwrap_or_default(),
+        task: planned.task.name(),
+        why,
+        problem: planned.problem,
+    })
 }
 
 /// Fails unless the solves of all tasks of the plan are there.
@@ -94,10 +114,20 @@ pub fn check(path: &Path, plan: &SweepPlan) -> Result<(), SweepError> {
 pub fn collect(
     path: &Path,
     plan: &SweepPlan,
+    cases: Cases,
     watch: Watch,
     observer: &(dyn Fn(&Case, Event) + Sync),
 ) -> Result<Manifest, SweepError> {
-    check(path, plan)?;
+    if cases == Cases::All {
+        check(path, plan)?;
+    }
+    let found = scan_digests(&scans(&plan.recipe.cases()?)?);
+    if let Some((specimen, _)) =
+        found.iter().find(|(name, digest)| plan.scans.get(*name) != Some(*digest))
+    {
+        let specimen = if specimen.is_empty() { "the recipe" } else { specimen }.to_owned();
+        return Err(SweepError::ScansChanged { specimen });
+    }
     let prepared = Prepared::new(&plan.recipe, Layout::of_plan(path)?, watch)?;
     for (case, material) in prepared.cases.iter().zip(&prepared.material_of) {
         if plan.rubbers.get(*material) != Some(&prepared.materials[*material].rubber) {
@@ -105,7 +135,65 @@ pub fn collect(
             return Err(SweepError::RubberChanged { path });
         }
     }
-    finish(&prepared, watch, observer)
+    let store = SolveStore::open_packed(prepared.layout.solves())?;
+    let missing = prepared.missing(&store, watch)?;
+    if cases == Cases::All {
+        refuse_foreign(&missing, &prepared.cases, &store)?;
+    }
+    let mut open = BTreeSet::new();
+    if cases == Cases::Complete {
+        // Of all cases, since one task may be that of several.
+        open.extend(missing.into_iter().map(|wanted| wanted.case));
+        if open.len() == prepared.cases.len() {
+            return Err(SweepError::NoCompleteCase { cases: open.len() });
+        }
+    }
+    finish(&prepared, &open, watch, observer)
+}
+
+/// Fails if solves that an earlier plan asked for are damaged or of another version of the tool: solved anew
+/// here they would do, but nobody expects that of a collection. What is not there at all follows from results.
+fn refuse_foreign(
+    missing: &[Wanted],
+    cases: &[Case],
+    store: &SolveStore,
+) -> Result<(), SweepError> {
+    let refused: Vec<String> = missing
+        .iter()
+        .filter_map(|wanted| {
+            let why = refusal(&wanted.problem, store)?;
+            let case = cases[wanted.case].folder.display();
+            Some(format!("  {case}, {}: {why}", wanted.task.name()))
+        })
+        .collect();
+    if refused.is_empty() {
+        return Ok(());
+    }
+    let mut lines: Vec<String> = refused.iter().take(MOST_LINES).cloned().collect();
+    lines.push("plan again: the plan lists them; run its shards, then collect".into());
+    Err(SweepError::Incomplete { missing: refused.len(), tasks: missing.len(), lines })
+}
+
+/// Why the solves of a problem that are there are not to be used; none if they are or if there are none.
+fn refusal(problem: &Digest, store: &SolveStore) -> Option<String> {
+    match store.pack_info(problem) {
+        Ok(Some(pack)) if pack.tool_version != TOOL_VERSION => Some(format!(
+            "solved by asperity {}, this is {TOOL_VERSION}: {}",
+            pack.tool_version,
+            store.pack_path(problem).display()
+        )),
+        Ok(_) => None,
+        Err(error) => Some(error.to_string()),
+    }
+}
+
+/// Which cases the tables of a sweep are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cases {
+    /// All of them, or there are no tables.
+    All,
+    /// Those whose solves are all there; a warning names the others.
+    Complete,
 }
 
 /// A line for each shard that is not complete, and how to complete it.
@@ -140,11 +228,14 @@ pub fn run(
     watch: Watch,
     observer: &(dyn Fn(&Case, Event) + Sync),
 ) -> Result<Manifest, SweepError> {
-    finish(&Prepared::new(recipe, Layout::new(out), watch)?, watch, observer)
+    let prepared = Prepared::new(recipe, Layout::new(out), watch)?;
+    finish(&prepared, &BTreeSet::new(), watch, observer)
 }
 
+/// Computes all cases but those left out, which are named in a warning, and writes the tables.
 fn finish(
     prepared: &Prepared,
+    left_out: &BTreeSet<usize>,
     watch: Watch,
     observer: &(dyn Fn(&Case, Event) + Sync),
 ) -> Result<Manifest, SweepError> {
@@ -154,7 +245,9 @@ fn finish(
     let of_cases: Vec<(Input, Vec<SweepFrictionRow>)> = prepared
         .cases
         .par_iter()
-        .map(|case| {
+        .enumerate()
+        .filter(|(number, _)| !left_out.contains(number))
+        .map(|(_, case)| {
             watch.check_interrupt()?;
             let result = one_case(prepared, case, watch, observer)?;
             (watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
@@ -166,14 +259,18 @@ fn finish(
         stage: STAGE.to_owned(),
         stage_revision: REVISION,
         output_schemas: vec![schema_of::<SweepFrictionRow>()],
-        parameters: json!({}),
+        parameters: json!({ "tolerance": prepared.cases[0].recipe.tolerance }),
         inputs,
     };
     let folder = RunFolder::share(prepared.layout.out())?;
     let mut pending = folder.begin(STAGE)?;
     pending.write_table(FRICTION_FILE, &rows.concat(), &Metadata::new())?;
     let seconds = begin.elapsed().as_secs_f64();
-    let manifest = Manifest::new(&identity, pending.outputs().to_vec(), Vec::new(), seconds)?;
+    let name = |number: &usize| prepared.cases[*number].folder.display().to_string();
+    let warnings =
+        left_out.iter().map(|case| format!("left out, its solves are missing: {}", name(case)));
+    let warnings = warnings.collect();
+    let manifest = Manifest::new(&identity, pending.outputs().to_vec(), warnings, seconds)?;
     pending.commit(&manifest)?;
     Ok(manifest)
 }

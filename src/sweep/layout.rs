@@ -16,8 +16,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 const PLANS: &str = "plans";
-const SURFACES: &str = "surfaces";
-const CASES: &str = "cases";
+/// Folder of the surfaces of all specimens and seeds.
+pub const SURFACES_FOLDER: &str = "surfaces";
+/// Folder of the cases.
+pub const CASES_FOLDER: &str = "cases";
 /// File of a plan in its folder.
 pub(super) const PLAN_FILE: &str = "plan.json";
 /// The recipe of a case, in its folder.
@@ -70,12 +72,12 @@ impl Layout {
     }
 
     pub(super) fn surfaces(&self, case: &Case) -> PathBuf {
-        self.out.join(SURFACES).join(&case.surfaces)
+        self.out.join(SURFACES_FOLDER).join(&case.surfaces)
     }
 
     /// The run folder of a case.
     pub fn case(&self, case: &Case) -> PathBuf {
-        self.out.join(CASES).join(&case.folder)
+        self.out.join(CASES_FOLDER).join(&case.folder)
     }
 
     /// Makes `link` lead to `target`, both below the folder of the sweep, which may be moved as a whole. What

@@ -25,8 +25,8 @@ pub mod slurm;
 mod table;
 mod task;
 
-pub use collect::{ShardState, check, collect, run, states};
-pub use layout::{Layout, RECIPE_FILE};
+pub use collect::{Cases, MissingTask, ShardState, check, collect, run, states};
+pub use layout::{CASES_FOLDER, Layout, RECIPE_FILE, SURFACES_FOLDER};
 pub use plan::{PlannedShard, PlannedTask, ShardTasks, SweepPlan, plan, read_plan};
 pub use prepare::Prepared;
 pub use shard::{ShardReport, run_shard};
@@ -115,6 +115,14 @@ pub enum SweepError {
         /// The file of the rubber.
         path: PathBuf,
     },
+    /// Scans that are others since the plan.
+    #[error(
+        "scans of {specimen} have changed since the plan was made: put them back, or plan again"
+    )]
+    ScansChanged {
+        /// The specimen, or the recipe's own scans.
+        specimen: String,
+    },
     /// Shards that have not solved all their tasks.
     #[error("{missing} of {tasks} tasks are missing:\n{}", lines.join("\n"))]
     Incomplete {
@@ -124,6 +132,14 @@ pub enum SweepError {
         tasks: usize,
         /// A line for each shard, and what to do.
         lines: Vec<String>,
+    },
+    /// Not one case that could be in a table.
+    #[error(
+        "not one of {cases} cases has all its solves: run shards first (`asperity sweep status`)"
+    )]
+    NoCompleteCase {
+        /// Their number.
+        cases: usize,
     },
     /// No scheduler where one is asked for.
     #[error("{0}")]

@@ -2,6 +2,7 @@
 
 use super::cost::{Cost, Costs};
 use super::layout::{Layout, PLAN_FILE, write_by_rename};
+use super::prepare::scan_digests;
 use super::task::{Solvers, Task};
 use super::{Prepared, SweepError, shares};
 use crate::artifact::{Digest, SolveStore, TOOL_VERSION};
@@ -75,6 +76,8 @@ pub struct SweepPlan {
     pub cases: usize,
     /// The rubbers, each at each temperature.
     pub rubbers: Vec<Rubber>,
+    /// Digests of the scans of each specimen.
+    pub scans: BTreeMap<String, Digest>,
     /// The shards.
     pub shards: Vec<PlannedShard>,
     /// Seconds of the machine that planned for one of the reference; no part of the digest.
@@ -85,10 +88,10 @@ pub struct SweepPlan {
 /// A task that a case wants.
 #[derive(Debug, Clone)]
 pub(super) struct Wanted {
-    case: usize,
-    problem: Digest,
+    pub case: usize,
+    pub problem: Digest,
     key: Digest,
-    task: Task,
+    pub task: Task,
 }
 
 impl Wanted {
@@ -171,6 +174,7 @@ pub fn plan(
         recipe: recipe.clone(),
         cases: prepared.cases.len(),
         rubbers: prepared.materials.iter().map(|material| material.rubber.clone()).collect(),
+        scans: scan_digests(&prepared.scans),
         shards: planned,
         slowness: costs.slowness,
         digest: Digest::of_bytes(&[]),
@@ -242,7 +246,7 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
     }
     std::fs::create_dir_all(&plans).map_err(failed(&plans))?;
     let place = plans.join(format!("{:#}", plan.digest));
-    if read_plan(&place.join(PLAN_FILE)).is_ok() {
+    if is_whole(&place.join(PLAN_FILE)) {
         return Ok(place.join(PLAN_FILE));
     }
     let folder = tempfile::Builder::new()
@@ -257,13 +261,20 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
     match std::fs::rename(folder.path(), &place) {
         Ok(()) => drop(folder.keep()),
         // Another process has made it; what is damaged gives way to what is not.
-        Err(_) if read_plan(&place.join(PLAN_FILE)).is_ok() => {}
+        Err(_) if is_whole(&place.join(PLAN_FILE)) => {}
         Err(_) => {
             std::fs::remove_dir_all(&place).map_err(failed(&place))?;
             std::fs::rename(folder.keep(), &place).map_err(failed(&place))?;
         }
     }
     Ok(place.join(PLAN_FILE))
+}
+
+/// Whether the plan and all its lists are as they were written.
+fn is_whole(path: &Path) -> bool {
+    read_plan(path).is_ok_and(|plan| {
+        (0..plan.shards.len()).all(|shard| ShardTasks::read(path, &plan, shard).is_ok())
+    })
 }
 
 fn write_json(path: &Path, value: &impl Serialize) -> Result<(), SweepError> {
@@ -294,6 +305,9 @@ pub fn read_plan(path: &Path) -> Result<SweepPlan, SweepError> {
         schema: String,
         version: u32,
         tool_version: String,
+    }
+    if !path.is_file() {
+        return Err(SweepError::NoPlan { path: path.to_owned() });
     }
     let header: Header = read_json(path)?;
     if header.schema != PLAN_SCHEMA {

@@ -3,7 +3,7 @@
 use super::layout::Layout;
 use super::task::{Solvers, Task};
 use super::{SweepError, plan::Wanted};
-use crate::artifact::{RunView, SOLVES_FOLDER, SolveStore};
+use crate::artifact::{Digest, RunView, SOLVES_FOLDER, SolveStore};
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Case, Recipe};
 use crate::rubber::{Rubber, RubberData};
@@ -12,6 +12,7 @@ use crate::stages::ingest::{ScanFile, find_scans};
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Stage, StageError, Watch, fem, micro};
 use rayon::prelude::*;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -27,9 +28,12 @@ pub struct Prepared {
     pub materials: Vec<RubberData>,
     /// For each case the number of its rubber.
     pub material_of: Vec<usize>,
-    scans: BTreeMap<Option<String>, Vec<ScanFile>>,
+    pub(super) scans: Scans,
     surfaces: BTreeMap<PathBuf, Vec<Surface>>,
 }
+
+/// By specimen.
+type Scans = BTreeMap<Option<String>, Vec<ScanFile>>;
 
 /// Stages of the surfaces, which cases have in common.
 const SURFACE_STAGES: [Stage; 4] =
@@ -43,15 +47,7 @@ impl Prepared {
     pub fn new(recipe: &Recipe, layout: Layout, watch: Watch) -> Result<Self, SweepError> {
         let cases = recipe.cases()?;
         let solvers = Solvers::of(&cases[0].recipe)?;
-        let mut scans = BTreeMap::new();
-        for case in &cases {
-            if let (Some(ingest), false) = (&case.recipe.ingest, scans.contains_key(&case.specimen))
-            {
-                let found =
-                    find_scans(&ingest.scans).map_err(|e| of_stage(case, Stage::Ingest, e))?;
-                scans.insert(case.specimen.clone(), found);
-            }
-        }
+        let scans = scans(&cases)?;
         let (materials, material_of) = materials(&cases)?;
         let surfaces = BTreeMap::new();
         let mut prepared = Self { layout, cases, solvers, materials, material_of, scans, surfaces };
@@ -180,6 +176,29 @@ impl Prepared {
         }
         Ok(tasks)
     }
+}
+
+/// The scans of each specimen; none where the recipe states its waves.
+pub(super) fn scans(cases: &[Case]) -> Result<Scans, SweepError> {
+    let mut scans = BTreeMap::new();
+    for case in cases {
+        if let (Some(ingest), false) = (&case.recipe.ingest, scans.contains_key(&case.specimen)) {
+            let found = find_scans(&ingest.scans).map_err(|e| of_stage(case, Stage::Ingest, e))?;
+            scans.insert(case.specimen.clone(), found);
+        }
+    }
+    Ok(scans)
+}
+
+/// A digest of names and contents of the scans of each specimen, by which a plan knows them; the recipe's own
+/// scans have an empty name.
+pub(super) fn scan_digests(scans: &Scans) -> BTreeMap<String, Digest> {
+    let digest = |files: &[ScanFile]| {
+        let files: Vec<_> = files.iter().map(|file| (&file.name, file.digest)).collect();
+        Digest::of_value(&json!(files))
+    };
+    let name = |specimen: &Option<String>| specimen.clone().unwrap_or_default();
+    scans.iter().map(|(specimen, files)| (name(specimen), digest(files))).collect()
 }
 
 /// The distinct rubbers of the cases, and which case has which.

@@ -90,6 +90,10 @@ pub(super) fn note_recipes(layout: &Layout, cases: &[Case]) -> Result<(), CliErr
     for case in cases {
         let folder = layout.case(case);
         let path = folder.join(RECIPE_FILE);
+        // A case that was left out has none.
+        if !path.exists() {
+            continue;
+        }
         let text = std::fs::read_to_string(&path).map_err(|error| {
             CliError::failure(format!("cannot read {}: {error}", path.display()))
         })?;
@@ -140,6 +144,7 @@ impl From<SweepError> for CliError {
             | SweepError::OtherVersion { .. }
             | SweepError::NoSuchShard { .. }
             | SweepError::RubberChanged { .. }
+            | SweepError::ScansChanged { .. }
             | SweepError::Slurm(_) => Self::input(error),
             _ => Self::failure(error),
         }
