@@ -70,11 +70,12 @@ def lose_node(slurm, node):
     slurm.kill(node)
     frozen = slurm.of_jobs(node)
     for process in frozen:
-        os.kill(process, signal.SIGSTOP)
         status = Path(f"/proc/{process}/status").read_text()
         parent = next(line.split()[1] for line in status.splitlines() if line.startswith("PPid:"))
+        # First the parent: a stopped process that becomes an orphan is sent SIGHUP.
         if "slurmstepd" in Path(f"/proc/{parent}/cmdline").read_bytes().decode():
             kill(int(parent))
+        os.kill(process, signal.SIGSTOP)
     return frozen
 
 
@@ -109,10 +110,15 @@ def node_dies(program, folder):
         plan = sweep.plan(24)
         array, collect = sweep.submit(plan)
 
+        seen = set()
+
         def under_way():
-            states = list(slurm.states(array).values())
-            done = sum(state == "COMPLETED" for state, _ in states)
-            return done >= 3 and ("RUNNING", "n2") in states
+            """An element has just begun on the node, after some have ended."""
+            processes = set(slurm.of_jobs("n2"))
+            begun = processes - seen
+            seen.update(processes)
+            states = slurm.states(array).values()
+            return begun and sum(state == "COMPLETED" for state, _ in states) >= 3
 
         slurm.wait_for("array in mid-run", under_way, 300)
         lost = [name for name, row in slurm.states(array).items() if row == ("RUNNING", "n2")]

@@ -161,7 +161,7 @@ pub fn plan(
         let list = ShardTasks::new(shard, tasks.map(|w| w.planned(&prepared)).collect())?;
         planned.push(PlannedShard {
             tasks: list.tasks.len(),
-            seconds: share.iter().map(|group| seconds[*group]).sum(),
+            seconds: share.iter().fold(0.0, |sum, group| sum + seconds[*group]),
             megabytes: share.iter().map(|g| group_costs[*g].megabytes).fold(0.0, f64::max),
             digest: list.digest,
         });
