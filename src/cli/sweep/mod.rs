@@ -127,8 +127,10 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// A path for people: relative to the working folder, if it is in it.
 fn display(path: &Path) -> String {
-    path.display().to_string()
+    let here = std::env::current_dir().unwrap_or_default();
+    path.strip_prefix(here).unwrap_or(path).display().to_string()
 }
 
 impl From<SweepError> for CliError {

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::super::output::{json as json_text, note, print};
 use super::super::recipe_options::RecipeOptions;
 use super::super::{CliError, values};
-use super::{display, duration, watched};
+use super::{duration, watched};
 use crate::sweep::{SweepPlan, plan};
 
 const EXAMPLES: &str = "\
@@ -58,7 +58,7 @@ impl Plan {
                 "megabytes": plan.megabytes(1),
             }))?);
         }
-        print(&format!("{}\n", display(&path)))
+        print(&format!("{}\n", path.display()))
     }
 }
 
