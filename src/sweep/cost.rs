@@ -10,8 +10,8 @@ use super::{Prepared, SweepError};
 use crate::artifact::SolveStore;
 use crate::forecast::micro as finite_elements;
 use crate::recipe::Case;
-use crate::stages::Watch;
 use crate::stages::bem::{self, SolveRow};
+use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -19,6 +19,8 @@ use std::time::Instant;
 /// Seconds for a grid point and an iteration of the half-space with all that comes with it, error estimate and
 /// set-up included: 60 curves of the recipe `pipelines/sweep.toml` in 4.7 s, 128 on four times the points in 47 s.
 const SECONDS_PER_POINT_AND_ITERATION: f64 = 4.4e-7;
+/// Iterations of a whole curve where no trial tells.
+const TYPICAL_ITERATIONS: f64 = 22.0;
 /// The largest local pressure over the mean pressure in the contacts: 2.1 and 1.4 in the main job.
 const PEAK: f64 = 1.7;
 /// Coarser meshes for an error estimate cost two fifths more.
@@ -29,7 +31,7 @@ const BYTES_PER_POINT: f64 = 250.0;
 const MEGABYTES_PER_COLUMN: f64 = 0.15;
 
 /// Seconds and memory of one task.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Cost {
     pub seconds: f64,
     pub megabytes: f64,
@@ -72,20 +74,27 @@ impl<'a> Costs<'a> {
                 }
             }
         }
-        let solved: Vec<(Vec<SolveRow>, f64, bool)> = curves
+        let solved: Vec<Option<(Vec<SolveRow>, f64, bool)>> = curves
             .par_iter()
             .map(|(case, task)| {
                 watch.check_interrupt()?;
                 let rubber = prepared.rubber(*case);
                 let there = task.is_finished(&solvers.bem, rubber, store)?;
                 let start = Instant::now();
-                let rows = task.solve(&solvers.bem, rubber, store, watch)?;
-                Ok((rows, start.elapsed().as_secs_f64(), there))
+                match task.solve(&solvers.bem, rubber, store, watch) {
+                    Ok(rows) => Ok(Some((rows, start.elapsed().as_secs_f64(), there))),
+                    Err(error @ (StageError::Interrupted | StageError::Artifact(_))) => {
+                        Err(error.into())
+                    }
+                    // The shard that gets it says so.
+                    Err(_) => Ok(None),
+                }
             })
             .collect::<Result<_, SweepError>>()?;
         let mut trials: BTreeMap<(Option<String>, u32), Trial> = BTreeMap::new();
         let (mut measured, mut expected) = (0.0, 0.0);
-        for ((case, task), (rows, elapsed, there)) in curves.iter().zip(solved) {
+        for ((case, task), solved) in curves.iter().zip(solved) {
+            let Some((rows, elapsed, there)) = solved else { continue };
             let work: f64 = rows.iter().map(|row| (row.iterations * row.grid_points) as f64).sum();
             let seconds = SECONDS_PER_POINT_AND_ITERATION * work;
             if !there {
@@ -106,10 +115,15 @@ impl<'a> Costs<'a> {
     pub fn of(&self, task: &Task, case: &Case) -> Cost {
         match task {
             Task::Bem(task) => {
+                let grid_points = task.grid_points(&self.solvers.bem) as f64;
                 let trial = self.trials.get(&(case.specimen.clone(), task.surface.waves));
-                trial.map_or(Cost { seconds: 1.0, megabytes: 1.0 }, |trial| {
-                    trial.scaled(task.speed_mm_s, task.grid_points(&self.solvers.bem) as f64)
-                })
+                trial.map_or_else(
+                    || Cost {
+                        seconds: SECONDS_PER_POINT_AND_ITERATION * TYPICAL_ITERATIONS * grid_points,
+                        megabytes: 2.0 * grid_points * BYTES_PER_POINT / 1e6,
+                    },
+                    |trial| trial.scaled(task.speed_mm_s, grid_points),
+                )
             }
             Task::Micro(task) => {
                 let local = |pressed: &crate::stages::micro::PressedSurface| {

@@ -142,31 +142,7 @@ pub fn plan(
     let store = SolveStore::open_packed(layout.solves())?;
     let costs = Costs::try_out(&prepared, &prepared.solvers, &store, watch)?;
     let wanted = prepared.missing(&store, watch)?;
-    let groups = groups(wanted);
-    let group_costs: Vec<Cost> = groups
-        .iter()
-        .map(|group| {
-            let costs = group.iter().map(|w| costs.of(&w.task, &prepared.cases[w.case]));
-            costs.fold(Cost { seconds: 0.0, megabytes: 0.0 }, |sum, cost| Cost {
-                seconds: sum.seconds + cost.seconds,
-                megabytes: sum.megabytes.max(cost.megabytes),
-            })
-        })
-        .collect();
-    let seconds: Vec<f64> = group_costs.iter().map(|cost| cost.seconds).collect();
-    let mut lists = Vec::with_capacity(shards);
-    let mut planned = Vec::with_capacity(shards);
-    for (shard, share) in shares::deal(&seconds, shards).into_iter().enumerate() {
-        let tasks = share.iter().flat_map(|group| &groups[*group]);
-        let list = ShardTasks::new(shard, tasks.map(|w| w.planned(&prepared)).collect())?;
-        planned.push(PlannedShard {
-            tasks: list.tasks.len(),
-            seconds: share.iter().fold(0.0, |sum, group| sum + seconds[*group]),
-            megabytes: share.iter().map(|g| group_costs[*g].megabytes).fold(0.0, f64::max),
-            digest: list.digest,
-        });
-        lists.push(list);
-    }
+    let (lists, planned) = deal(&groups(wanted), &prepared, &costs, shards)?;
     let mut plan = SweepPlan {
         schema: PLAN_SCHEMA.to_owned(),
         version: VERSION,
@@ -182,6 +158,39 @@ pub fn plan(
     plan.digest = plan.seal()?;
     let path = write(&layout, &plan, &lists)?;
     Ok((path, plan))
+}
+
+/// The list of each shard and what the plan says about it, of groups of tasks that are not parted.
+fn deal(
+    groups: &[Vec<Wanted>],
+    prepared: &Prepared,
+    costs: &Costs,
+    shards: usize,
+) -> Result<(Vec<ShardTasks>, Vec<PlannedShard>), SweepError> {
+    let together = |sum: Cost, cost: Cost| Cost {
+        seconds: sum.seconds + cost.seconds,
+        megabytes: sum.megabytes.max(cost.megabytes),
+    };
+    let cost = |group: &Vec<Wanted>| {
+        let costs = group.iter().map(|w| costs.of(&w.task, &prepared.cases[w.case]));
+        costs.fold(Cost::default(), together)
+    };
+    let group_costs: Vec<Cost> = groups.iter().map(cost).collect();
+    let seconds: Vec<f64> = group_costs.iter().map(|cost| cost.seconds).collect();
+    let (mut lists, mut planned) = (Vec::with_capacity(shards), Vec::with_capacity(shards));
+    for (shard, share) in shares::deal(&seconds, shards).into_iter().enumerate() {
+        let tasks = share.iter().flat_map(|group| &groups[*group]);
+        let list = ShardTasks::new(shard, tasks.map(|w| w.planned(prepared)).collect())?;
+        let whole = share.iter().map(|group| group_costs[*group]).fold(Cost::default(), together);
+        planned.push(PlannedShard {
+            tasks: list.tasks.len(),
+            seconds: whole.seconds,
+            megabytes: whole.megabytes,
+            digest: list.digest,
+        });
+        lists.push(list);
+    }
+    Ok((lists, planned))
 }
 
 /// Tasks of one problem, which write one file, in the order of the first of them; a task that several

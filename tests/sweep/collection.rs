@@ -24,6 +24,9 @@ fn shards_that_did_not_run_are_named() {
     assert!(status.contains("2 of 4 shards complete"), "{status}");
 }
 
+/// What is done to a file with its bytes, another one being at hand.
+type Damage = fn(&Path, &[u8], &Path);
+
 /// Whatever is done to a file of solves: its task counts as missing, and its shard makes it anew.
 #[test]
 fn a_damaged_result_is_named_and_made_anew() {
@@ -32,7 +35,7 @@ fn a_damaged_result_is_named_and_made_anew() {
     let plan = solved(&campaign, "out", 3);
     let files = packs(&campaign, "out");
     let intact: Vec<Vec<u8>> = files.iter().map(|path| fs::read(path).unwrap()).collect();
-    let damages: [(&str, fn(&Path, &[u8], &Path)); 5] = [
+    let damages: [(&str, Damage); 5] = [
         ("a flipped bit", |path, bytes, _| {
             let mut bytes = bytes.to_vec();
             let middle = bytes.len() / 2;

@@ -125,3 +125,17 @@ fn a_recipe_without_lists_can_be_spread_too() {
     let table = "tables/friction.arrow";
     assert_eq!(read(&format!("out/cases/all/{table}")), read(&format!("single/{table}")));
 }
+
+/// What cannot be solved does not stop the plan, also where costs are told from it.
+#[test]
+fn a_plan_is_made_of_tasks_without_a_solution_too() {
+    let campaign = campaign();
+    // Fewer than two points in the smallest contact on the finest grid that is tried.
+    campaign.edit("recipe.toml", "[0.02, 0.05, 0.1]", "[0.00001, 0.05, 0.1]");
+    let plan = plan(&campaign, "out", 2);
+    assert_eq!(shares(&plan, 2).concat().len(), 32);
+    let outcome = quietly(&campaign, &format!("sweep run {plan} --shard 0"));
+    assert_eq!(outcome.code, 1);
+    assert!(outcome.stderr.contains("leave it out of bem.area_fractions"), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("16 of 16 tasks of shard 0"), "{}", outcome.stderr);
+}
