@@ -3,6 +3,7 @@
 use super::layout::{Layout, RECIPE_FILE, write_by_rename};
 use super::plan::{PlannedTask, ShardTasks, SweepPlan, Wanted};
 use super::prepare::{of_case, scan_digests, scans};
+use super::slurm::shell_word;
 use super::table::{FRICTION_FILE, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
@@ -213,7 +214,7 @@ fn lines(path: &Path, states: &[ShardState]) -> Vec<String> {
     let shard = open.first().map_or(0, |state| state.shard);
     lines.push(format!(
         "run them again, such as `asperity sweep run {} --shard {shard}`, then collect",
-        path.display()
+        shell_word(&path.display().to_string())
     ));
     lines
 }

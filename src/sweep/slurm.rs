@@ -82,7 +82,8 @@ pub fn scripts(
     let megabytes = (MARGIN * plan.megabytes(request.cpus.max(1))).max(LEAST_MEGABYTES).ceil();
     let megabytes = request.megabytes.map_or(megabytes, f64::from);
     let logs = Layout::of_plan(path)?.logs();
-    let (program, plan_path) = (quoted(&request.program), quoted(&path.display().to_string()));
+    let (program, plan_path) =
+        (shell_word(&request.program), shell_word(&path.display().to_string()));
     let log = |name: &str| quoted_option(&logs.join(name));
     let mut array = header("asperity", minutes, megabytes, request);
     // Writing to a string cannot fail.
@@ -94,7 +95,7 @@ pub fn scripts(
     let _ = writeln!(collect, "#SBATCH --requeue");
     let _ = writeln!(collect, "#SBATCH --output={}", log("%j_collect.log"));
     let further: String =
-        request.arguments().iter().map(|word| format!(" {}", quoted(word))).collect();
+        request.arguments().iter().map(|word| format!(" {}", shell_word(word))).collect();
     let _ = writeln!(collect, "exec {program} sweep collect {plan_path} --submit-next{further}");
     Ok(Scripts { array, collect })
 }
@@ -115,8 +116,12 @@ fn header(name: &str, minutes: f64, megabytes: f64, request: &Request) -> String
     text
 }
 
-/// One word of a shell.
-fn quoted(text: &str) -> String {
+/// A text as one word of a shell.
+pub fn shell_word(text: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:=@,".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        return text.to_owned();
+    }
     format!("'{}'", text.replace('\'', r"'\''"))
 }
 

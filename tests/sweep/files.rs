@@ -15,6 +15,8 @@ fn a_case_is_a_run_folder_with_a_recipe_of_its_own() {
     let table = quietly(&campaign, &format!("export {case} --format markdown --speed 10"));
     assert!(table.result().contains("rubber tread at 40 °C"));
     quietly(&campaign, &format!("report {case} --to report.html")).result();
+    let whole = quietly(&campaign, "report out --to whole.html").error(2);
+    assert!(whole.contains("the folder of a sweep") && whole.contains("out/cases"), "{whole}");
     // A run in it continues from what is there.
     let run = quietly(&campaign, &format!("run {case}/recipe.toml --out {case} --json")).json();
     let stages = run["stages"].as_array().unwrap();

@@ -107,8 +107,7 @@ fn set_threads(asked: Option<usize>) -> Result<usize, CliError> {
     if asked == Some(0) {
         return Err(CliError::input("--threads is 0: give at least 1"));
     }
-    let given = ["SLURM_CPUS_PER_TASK", "HQ_NUM_CPUS"];
-    let given = given.iter().find_map(|name| std::env::var(name).ok()?.parse().ok());
+    let given = given_cores(|name| std::env::var(name).ok());
     if let Some(threads) = asked.or(given) {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -116,6 +115,13 @@ fn set_threads(asked: Option<usize>) -> Result<usize, CliError> {
             .map_err(CliError::failure)?;
     }
     Ok(rayon::current_num_threads())
+}
+
+/// Cores that a scheduler gives this process: Slurm says their number, HyperQueue lists them.
+fn given_cores(variable: impl Fn(&str) -> Option<String>) -> Option<usize> {
+    let listed = || Some(variable("HQ_CPUS")?.split(',').count());
+    let number = variable("SLURM_CPUS_PER_TASK").and_then(|text| text.parse().ok());
+    number.or_else(listed).filter(|cores| *cores > 0)
 }
 
 /// "3.2 min" and the like.
@@ -150,5 +156,21 @@ impl From<SweepError> for CliError {
             | SweepError::Slurm(_) => Self::input(error),
             _ => Self::failure(error),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scheduler_says_how_many_cores_there_are() {
+        let given = |set: &'static str, value: &'static str| {
+            given_cores(|name| (name == set).then(|| value.to_owned()))
+        };
+        assert_eq!(given("SLURM_CPUS_PER_TASK", "4"), Some(4));
+        assert_eq!(given("SLURM_CPUS_PER_TASK", "0"), None);
+        assert_eq!(given("HQ_CPUS", "2,3,7"), Some(3));
+        assert_eq!(given("OTHER", "5"), None);
     }
 }
