@@ -43,6 +43,7 @@
 //! | [`stages`] | one file a stage: parameters, row types, one function |
 //! | [`recipe`] | the TOML file that says what a run does |
 //! | [`pipeline`] | the one function that wires the stages |
+//! | [`sweep`] | the cases of a recipe, spread over many machines |
 //! | [`report`] | tables and figures for people |
 //!
 //! The rest (`cli`, `bench`, `forecast`, `schemas`) is the program, public for its own binary, tests and benchmarks.
@@ -74,4 +75,5 @@ pub mod scans;
 pub mod schemas;
 pub mod stages;
 pub mod surface;
+pub mod sweep;
 pub mod theory;

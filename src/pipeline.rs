@@ -7,8 +7,9 @@ use crate::artifact::{
     ArtifactError, Identity, Manifest, RunFolder, RunView, SOLVES_FOLDER, SolveStore,
 };
 use crate::recipe::{Recipe, Violation, Work};
+use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Context, Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro,
+    Context, Stage, StageError, Watch, approximate, bem, characterise, fem, hybrid, ingest, micro,
     realise, sinusoid, tables,
 };
 use plan::Plan;
@@ -131,13 +132,58 @@ pub fn run(
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     // First what can be wrong without leaving a folder behind.
-    let plan = Plan::new(recipe)?;
+    let plan = Plan::new(recipe, None)?;
     plan.check(selection)?;
     let folder = RunFolder::open(out)?;
+    bring_up_to_date(&plan, &folder, selection, interrupted, observer)
+}
+
+/// The same for a folder that other processes, also on other machines, may bring up to the same recipe at the
+/// same time. `scans` are those of the recipe, which are not looked up again.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_shared(
+    recipe: &Recipe,
+    scans: &[ScanFile],
+    out: &Path,
+    selection: Selection,
+    interrupted: &AtomicBool,
+    observer: &(dyn Fn(Event) + Sync),
+) -> Result<(), PipelineError> {
+    let plan = Plan::new(recipe, Some(scans))?;
+    plan.check(selection)?;
+    let folder = RunFolder::share(out)?;
+    bring_up_to_date(&plan, &folder, selection, interrupted, observer)
+}
+
+/// Reads what a recipe refers to, its rubber for one; fails where a run would.
+///
+/// # Errors
+/// As [`run`].
+pub fn check(recipe: &Recipe, scans: &[ScanFile]) -> Result<(), PipelineError> {
+    Plan::new(recipe, Some(scans)).map(drop)
+}
+
+/// The stages of a recipe, in the order of the data.
+///
+/// # Errors
+/// [`Violation`] for a recipe that is none.
+pub fn stages(recipe: &Recipe) -> Result<Vec<Stage>, Violation> {
+    Ok(plan::stages(recipe.work()?))
+}
+
+fn bring_up_to_date(
+    plan: &Plan,
+    folder: &RunFolder,
+    selection: Selection,
+    interrupted: &AtomicBool,
+    observer: &(dyn Fn(Event) + Sync),
+) -> Result<(), PipelineError> {
     for stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
-        let identity = plan.identity(stage, &folder)?;
-        let state = state(stage, &identity, &folder)?;
+        let identity = plan.identity(stage, folder)?;
+        let state = state(stage, &identity, folder)?;
         if !selection.includes(stage) {
             let mut selected = plan.stages().into_iter().filter(|stage| selection.includes(*stage));
             let reader = selected.find(|selected| plan.upstream(*selected).contains(&stage));
@@ -158,10 +204,12 @@ pub fn run(
         let start = Instant::now();
         let mut context = Context {
             pending: folder.begin(stage.name())?,
-            progress: &|done, total| observer(Event::Progress(stage, done, total)),
-            interrupted,
+            watch: Watch {
+                progress: &|done, total| observer(Event::Progress(stage, done, total)),
+                interrupted,
+            },
         };
-        let warnings = compute(stage, &plan, &folder, selection, &mut context).map_err(in_stage)?;
+        let warnings = compute(stage, plan, folder, selection, &mut context).map_err(in_stage)?;
         context.check_interrupt().map_err(in_stage)?;
         let outputs = context.pending.outputs().to_vec();
         let seconds = start.elapsed().as_secs_f64();
@@ -178,7 +226,7 @@ pub fn run(
 /// [`PipelineError`] for scans, a rubber or a manifest that cannot be read.
 pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, PipelineError> {
     let view = RunView::of(out);
-    let plan = Plan::new(recipe)?;
+    let plan = Plan::new(recipe, None)?;
     let mut states: Vec<(Stage, State)> = Vec::new();
     for stage in plan.stages() {
         let upstream = plan.upstream(stage);

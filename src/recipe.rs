@@ -1,6 +1,9 @@
 //! The recipe: a TOML file that says what a run does, with units in its keys.
 
 mod hints;
+mod sweep;
+
+pub use sweep::{Case, Specimen, Sweep};
 
 use crate::scans::ScanProblem;
 use crate::stages::{
@@ -22,7 +25,7 @@ use std::path::{Path, PathBuf};
 
 /// A recipe. Paths in it are relative to the folder of its file; unknown keys are refused.
 ///
-/// Either the sections from scans to tables, or `[sinusoid]` alone.
+/// Either the sections from scans to tables, with or without `[sweep]`, or `[sinusoid]` alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
@@ -66,6 +69,9 @@ pub struct Recipe {
     /// The study of one sine wave under three models, in place of all other sections.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sinusoid: Option<Sinusoid>,
+    /// Lists of specimens, rubbers, temperatures and seeds: a case for every combination.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<Sweep>,
 }
 
 /// What a recipe asks for.
@@ -169,6 +175,18 @@ pub enum Violation {
         "section [hybrid] without [micro]: the correction is made of the microscale; add [micro]"
     )]
     HybridWithoutMicro,
+    /// A recipe of several cases where one is wanted.
+    #[error(
+        "the recipe has a section [sweep] of {cases} cases: `asperity run` runs them all, `asperity \
+         sweep` spreads them over machines; a finished case has a recipe of its own in its folder"
+    )]
+    SeveralCases {
+        /// Their number.
+        cases: usize,
+    },
+    /// Cases of the study of one sine.
+    #[error("[sinusoid] lists what it solves: there is nothing to sweep")]
+    SweepOfSinusoid,
     /// The description of the scan files.
     #[error("[ingest.text]: {0}")]
     Text(#[from] ScanProblem),
@@ -223,8 +241,11 @@ impl Recipe {
             recipe.bem.as_mut().map(|bem| &mut bem.rubber),
             recipe.sinusoid.as_mut().map(|sinusoid| &mut sinusoid.rubber),
         ];
-        for rubber in rubbers.into_iter().flatten() {
+        for rubber in rubbers.into_iter().flatten().filter(|path| **path != Path::new("")) {
             *rubber = folder.join(&*rubber);
+        }
+        if let Some(sweep) = &mut recipe.sweep {
+            sweep.resolve(folder);
         }
         for published in &mut recipe.tables.published {
             published.file = folder.join(&published.file);
@@ -275,11 +296,50 @@ impl Recipe {
         Ok(())
     }
 
+    /// The recipe as a text that [`Recipe::parse`] reads back to the same.
+    ///
+    /// # Errors
+    /// What has no form in TOML, in words.
+    pub fn to_toml(&self) -> Result<String, String> {
+        let mut written = self.clone();
+        if self.tolerance.is_some()
+            && let Some(bem) = &mut written.bem
+        {
+            // They follow from it and must not stand beside it.
+            (bem.tolerance, bem.grid_tolerance, bem.average_tolerance) = (None, None, None);
+        }
+        toml::to_string(&written).map_err(|error| error.to_string())
+    }
+
+    /// The same with all paths absolute, for a recipe that is read elsewhere.
+    ///
+    /// # Errors
+    /// The operating system's, if the working folder is not known.
+    pub fn absolute(mut self) -> std::io::Result<Self> {
+        let mut paths: Vec<&mut PathBuf> = Vec::new();
+        paths.extend(self.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans));
+        paths.extend(self.bem.iter_mut().map(|bem| &mut bem.rubber));
+        paths.extend(self.sinusoid.iter_mut().map(|sinusoid| &mut sinusoid.rubber));
+        paths.extend(self.tables.published.iter_mut().map(|published| &mut published.file));
+        if let Some(sweep) = &mut self.sweep {
+            paths.extend(&mut sweep.rubbers);
+            paths.extend(sweep.specimens.iter_mut().flat_map(|specimen| &mut specimen.scans));
+        }
+        for path in paths.into_iter().filter(|path| **path != Path::new("")) {
+            *path = std::path::absolute(&*path)?;
+        }
+        Ok(self)
+    }
+
     /// What the recipe asks for.
     ///
     /// # Errors
-    /// [`Violation::MissingSection`], [`Violation::SectionBesideSinusoid`].
+    /// [`Violation::MissingSection`], [`Violation::SectionBesideSinusoid`],
+    /// [`Violation::SeveralCases`].
     pub fn work(&self) -> Result<Work<'_>, Violation> {
+        if self.sweep.is_some() && self.sinusoid.is_none() {
+            return Err(Violation::SeveralCases { cases: self.cases()?.len() });
+        }
         let Some(sinusoid) = &self.sinusoid else {
             return self.chain().map(Work::Chain);
         };
@@ -293,6 +353,7 @@ impl Recipe {
             ("hybrid", self.hybrid.is_some()),
             ("fem", self.fem.is_some()),
             ("tables", self.tables != Tables::default()),
+            ("sweep", self.sweep.is_some()),
         ];
         match others.into_iter().find(|(_, present)| *present) {
             Some((section, _)) => Err(Violation::SectionBesideSinusoid { section }),
@@ -319,6 +380,11 @@ impl Recipe {
     }
 
     fn check(&self) -> Result<(), Violation> {
+        self.check_sweep()?;
+        if self.sweep.is_some() && self.sinusoid.is_none() {
+            // All cases are checked by what they have in common.
+            return self.cases()?.first().map_or(Ok(()), |case| case.recipe.check());
+        }
         match self.work()? {
             Work::Chain(chain) => chain.check(),
             Work::Sinusoid(sinusoid) => sinusoid.check(),

@@ -6,6 +6,7 @@ use crate::recipe::Recipe;
 use crate::stages::{
     approximate, bem, characterise, fem, hybrid, ingest, micro, realise, sinusoid, tables,
 };
+use crate::sweep::SweepFrictionRow;
 use schemars::schema_for;
 use serde_json::Value;
 
@@ -51,6 +52,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<tables::ComparisonRow>()?,
         table::<tables::ModelRow>()?,
         table::<tables::TheoryRow>()?,
+        table::<SweepFrictionRow>()?,
         table::<sinusoid::PointRow>()?,
         table::<sinusoid::AsymptoteRow>()?,
         table::<sinusoid::FieldRow>()?,

@@ -8,7 +8,8 @@
 //!   realise/
 //!     manifest.json
 //!     surfaces.h5             named arrays
-//! CACHE/ab/abcd….json         SolveStore, single results of a sweep
+//! CACHE/ab/abcd….json         SolveStore, single results
+//! CACHE/ab/abcd….pack         SolveStore of a sweep, all results of a problem
 //! ```
 //!
 //! Tables are Arrow IPC files, arrays HDF5 files; both carry units, a schema name, a version and a
@@ -39,7 +40,8 @@ pub use frame::{data_frame, write_csv, write_parquet};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
 pub use schema::{ArraysSchema, AttributeSchema, DatasetSchema, arrays_schema};
 pub use schema::{check_or_write, table_schema};
-pub use solves::{SOLVE_SCHEMA, SolveStore, StoredSolve, read_stored_solve};
+pub use solves::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, read_pack_info};
+pub use solves::{SOLVE_SCHEMA, SolveStore, Solves, StoredSolve, read_stored_solve};
 pub use store::{Pending, RunFolder, RunView, SOLVES_FOLDER};
 pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
 

@@ -2,7 +2,8 @@
 //!
 //! A result is written to a temporary folder, forced to the disk, its manifest last, then renamed
 //! into place. A manifest in place therefore means that the result is complete, and a kill at any
-//! moment leaves the old result or the new one. Needs a POSIX file system (rename, flock).
+//! moment leaves the old result or the new one. Needs a POSIX file system: rename, and flock where one
+//! process at a time is to write ([`RunFolder::open`]); a shared folder ([`RunFolder::share`]) needs no lock.
 
 use std::fs::{self, File, Permissions, TryLockError};
 use std::io::{self, Write};
@@ -158,12 +159,13 @@ fn check_size(path: &Path, expected: u64, found: u64) -> Result<(), ArtifactErro
     Err(ArtifactError::WrongSize { path: path.to_path_buf(), expected, found })
 }
 
-/// The output folder of the one run that may write to it; the lock ends with the value or the
-/// process.
+/// The output folder of the one run that may write to it, where the lock ends with the value or the
+/// process; or of any number of them, which all compute the same.
 #[derive(Debug)]
 pub struct RunFolder {
     view: RunView,
-    _lock: File,
+    /// None where the folder is shared.
+    lock: Option<File>,
 }
 
 /// A program that another thread is just starting holds a copy of every open file until it runs,
@@ -218,7 +220,22 @@ impl RunFolder {
         }
         sign(&mut lock).map_err(ArtifactError::io("write", &lock_path))?;
         clear_leftovers(&path)?;
-        Ok(Self { view: RunView { path }, _lock: lock })
+        Ok(Self { view: RunView { path }, lock: Some(lock) })
+    }
+
+    /// Creates the folder if needed, for one of several processes on any number of machines that bring it up
+    /// to the same recipe.
+    ///
+    /// Takes no lock, which shared file systems may not have or may keep for each machine alone, and clears
+    /// nothing away, which may be another's work. Whoever finishes a result first puts it in place; the others
+    /// find it and drop theirs.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`] if the folder cannot be created.
+    pub fn share(path: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
+        let path = path.into();
+        fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
+        Ok(Self { view: RunView { path }, lock: None })
     }
 
     /// Starts a result of the stage in a temporary folder; dropping it leaves the old result.
@@ -256,7 +273,9 @@ fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
             _ => remove(&path)?,
         }
     }
-    clear_solves(&run.join(SOLVES_FOLDER))
+    let solves = run.join(SOLVES_FOLDER);
+    // A linked store is that of a sweep, where others write.
+    if solves.is_symlink() { Ok(()) } else { clear_solves(&solves) }
 }
 
 /// Only with the lock: another process may be writing otherwise.
@@ -391,25 +410,72 @@ impl Pending<'_> {
 
         let run = self.run.path();
         let place = run.join(&self.stage);
-        let aside = run.join(format!("{REPLACED_PREFIX}{}", self.stage));
+        let put = if self.run.lock.is_some() {
+            self.replace(&place)?;
+            true
+        } else {
+            self.put_beside_others(&place, manifest)?
+        };
+        if put {
+            // The folder has moved; nothing is left for its guard to remove.
+            let _ = self.folder.keep();
+        }
+        synchronise(run)?;
+        remove_if_there(&run.join(format!("{REPLACED_PREFIX}{}", self.stage)))
+    }
+
+    /// Moves the old result aside, the new one into place. Nobody else writes.
+    fn replace(&self, place: &Path) -> Result<(), ArtifactError> {
+        let aside = self.run.path().join(format!("{REPLACED_PREFIX}{}", self.stage));
         let replaces = place.exists();
         if replaces {
-            fs::rename(&place, &aside).map_err(ArtifactError::io("rename", &place))?;
+            fs::rename(place, &aside).map_err(ArtifactError::io("rename", place))?;
         }
-        if let Err(error) = fs::rename(folder, &place) {
+        if let Err(error) = fs::rename(self.folder.path(), place) {
             if replaces {
-                fs::rename(&aside, &place).map_err(ArtifactError::io("restore", &place))?;
+                fs::rename(&aside, place).map_err(ArtifactError::io("restore", place))?;
             }
-            return Err(ArtifactError::io("rename a new result to", &place)(error));
-        }
-        // The folder has moved; nothing is left for its guard to remove.
-        let _ = self.folder.keep();
-        synchronise(run)?;
-        if replaces {
-            remove(&aside)?;
+            return Err(ArtifactError::io("rename a new result to", place)(error));
         }
         Ok(())
     }
+
+    /// Moves the new result into place unless another process has put the same there; returns whether it did.
+    /// What else is there is moved aside and removed.
+    fn put_beside_others(&self, place: &Path, manifest: &Manifest) -> Result<bool, ArtifactError> {
+        loop {
+            let Err(error) = fs::rename(self.folder.path(), place) else { return Ok(true) };
+            let occupied = [
+                io::ErrorKind::AlreadyExists,
+                io::ErrorKind::DirectoryNotEmpty,
+                io::ErrorKind::NotADirectory,
+            ];
+            if !occupied.contains(&error.kind()) {
+                return Err(ArtifactError::io("rename a new result to", place)(error));
+            }
+            let there = self.run.stage_manifest(&self.stage).ok().flatten();
+            if there.is_some_and(|there| there.key == manifest.key)
+                && self.run.verify(&self.stage).is_ok()
+            {
+                return Ok(false);
+            }
+            let aside = tempfile::Builder::new()
+                .prefix(PENDING_PREFIX)
+                .tempdir_in(self.run.path())
+                .map_err(ArtifactError::io("create a folder in", self.run.path()))?;
+            match fs::rename(place, aside.path().join("old")) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                    return Err(ArtifactError::io("rename", place)(error));
+                }
+                // Another process was quicker to move it.
+                _ => {}
+            }
+        }
+    }
+}
+
+fn remove_if_there(path: &Path) -> Result<(), ArtifactError> {
+    if path.exists() || path.is_symlink() { remove(path) } else { Ok(()) }
 }
 
 fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), ArtifactError> {

@@ -1,6 +1,7 @@
 //! `asperity export`: friction tables for people and other programs.
 
 mod study;
+mod sweep;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,7 @@ use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE, cleaning_mar
 use crate::stages::tables::{
     COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, Model, NOTE_KEY,
 };
+use crate::sweep::STAGE;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -37,6 +39,8 @@ Examples:
     asperity export runs/asphalt --table hybrid/local --format csv --to local.csv
   What was cleaned from the scans, and what that means for their slope:
     asperity export runs/captif --format markdown --cleaning --to cleaning.md
+  All cases of a sweep as one table with the specimen, rubber, temperature and seed of each row:
+    asperity export runs/sweep --format csv --to sweep.csv
   The study of one sine wave as a document, a figure and one CSV file for each table:
     asperity export runs/sinusoid --format markdown --to study.md
     asperity export runs/sinusoid --format svg --to study.svg
@@ -101,6 +105,9 @@ impl Export {
         if let Some(table) = &self.table {
             return self.one_table(&view, table, quiet);
         }
+        if view.stage_manifest(STAGE).map_err(CliError::input)?.is_some() {
+            return self.sweep(&view);
+        }
         if view.stage_manifest("sinusoid").map_err(CliError::input)?.is_some() {
             self.warn_of_doubt("sinusoid", quiet);
             return self.study(&view);
@@ -111,12 +118,7 @@ impl Export {
         if self.comparison {
             return self.comparison(&view, &rows);
         }
-        let rows: Vec<FrictionRow> = rows
-            .into_iter()
-            .filter(|row| self.model.is_none_or(|model| model.name() == row.model))
-            .filter(|row| self.waves.is_none_or(|waves| waves == row.waves))
-            .filter(|row| self.speed.is_none_or(|speed| speed == row.speed_mm_s))
-            .collect();
+        let rows: Vec<FrictionRow> = rows.into_iter().filter(|row| self.chosen(row)).collect();
         if rows.is_empty() {
             return Err(CliError::input(format!(
                 "{} has no table of that model, number of waves and speed: leave --model, --waves \
@@ -146,6 +148,13 @@ impl Export {
                 self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
             }
         }
+    }
+
+    /// Whether a row is of the model, number of waves and speed that were asked for.
+    fn chosen(&self, row: &FrictionRow) -> bool {
+        self.model.is_none_or(|model| model.name() == row.model)
+            && self.waves.is_none_or(|waves| waves == row.waves)
+            && self.speed.is_none_or(|speed| speed == row.speed_mm_s)
     }
 
     /// Says what of a result is not that of the recipe any more. Tables that are not there are an

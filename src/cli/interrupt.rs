@@ -1,16 +1,17 @@
-//! Ctrl-C for commands that have something to clean up; the others simply end.
+//! Ctrl-C, and the signal by which a scheduler ends a job, for commands that have something to clean up; the
+//! others simply end.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::CliError;
 
-/// Whether the user has pressed Ctrl-C since the installation.
+/// Whether the user has pressed Ctrl-C, or SIGTERM has come, since the installation.
 #[derive(Debug, Clone)]
 pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Takes Ctrl-C over for the rest of the process; once for each process.
+    /// Takes both over for the rest of the process; once for each process.
     ///
     /// # Errors
     /// [`CliError::Failure`] if the operating system refuses.

@@ -15,6 +15,7 @@ use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::report::html::Origin;
 use crate::stages::Stage;
+use crate::sweep::slurm::shell_word;
 
 /// What `asperity run` was given, as absolute paths.
 #[derive(Debug, Serialize, Deserialize)]
@@ -161,12 +162,7 @@ impl LastRun {
 
 /// A path as one word of a shell.
 fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+:=@,".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        return text;
-    }
-    format!("'{}'", text.replace('\'', r"'\''"))
+    shell_word(&path.display().to_string())
 }
 
 /// The reasons, or those of the stage before that they refer to.

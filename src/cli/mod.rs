@@ -23,6 +23,7 @@ mod run_folder;
 mod shell;
 mod solve;
 mod status;
+mod sweep;
 mod synth;
 mod values;
 mod verify;
@@ -50,6 +51,8 @@ enum Command {
     Status(status::Status),
     #[command(name = "plan")]
     Plan(plan::PlanCommand),
+    #[command(subcommand)]
+    Sweep(sweep::Sweep),
     Export(export::Export),
     Report(report::Report),
     Plot(plot::Plot),
@@ -78,6 +81,7 @@ impl Arguments {
             Command::Run(command) => command.run(self.quiet),
             Command::Status(command) => command.run(),
             Command::Plan(command) => command.run(self.quiet),
+            Command::Sweep(command) => command.run(self.quiet),
             Command::Export(command) => command.run(self.quiet),
             Command::Report(command) => command.run(self.quiet),
             Command::Plot(command) => command.run(self.quiet),

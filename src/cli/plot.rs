@@ -56,7 +56,7 @@ impl Plot {
             )));
         };
         let as_png = self.wants_png()?;
-        let view = run_folder::view(run)?;
+        let view = run_folder::view_of_case(run)?;
         let figure = kind.figure(&view)?.ok_or_else(|| {
             let run = run.display();
             CliError::input(format!("{run} has no figure `{name}`: that takes {}", kind.wants))

@@ -49,6 +49,38 @@ impl Drop for Spinner {
     }
 }
 
+/// A bar for work whose pieces are counted.
+pub(super) struct Bar(Option<ProgressBar>);
+
+impl Bar {
+    /// A bar on standard error if that is a terminal, else none.
+    pub(super) fn new(quiet: bool, what: &str) -> Self {
+        if quiet || !std::io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let template = "{prefix} [{bar:30}] {pos}/{len}, {elapsed} so far, {eta} to go";
+        let style =
+            ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+        Self(Some(ProgressBar::new(0).with_style(style).with_prefix(what.to_owned())))
+    }
+
+    /// Pieces of work are done.
+    pub(super) fn advance(&self, done: u64, total: u64) {
+        if let Some(bar) = &self.0 {
+            bar.set_length(total);
+            // Threads report in any order.
+            bar.set_position(bar.position().max(done));
+        }
+    }
+
+    /// Ends the bar.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// The bar of the stage under way.
 pub(super) struct Progress {
     shown: bool,

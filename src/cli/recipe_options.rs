@@ -73,6 +73,12 @@ pub(super) fn with_scans(
                 path.display()
             )));
         };
+        if recipe.sweep.as_ref().is_some_and(|sweep| !sweep.specimens.is_empty()) {
+            return Err(CliError::input(format!(
+                "{} lists the scans of its specimens in [sweep]: leave --scans out",
+                path.display()
+            )));
+        }
         ingest.scans = scans.to_vec();
     }
     Ok(recipe)
@@ -100,35 +106,39 @@ impl From<RecipeError> for CliError {
     }
 }
 
+/// Whether what the user gave, and not the computation, is why a run ended.
+pub(super) fn is_input(error: &PipelineError) -> bool {
+    match error {
+        PipelineError::StaleInput { .. }
+        | PipelineError::Recipe(_)
+        | PipelineError::NoSuchStage { .. }
+        | PipelineError::ForcedOutside { .. } => true,
+        PipelineError::Artifact(_) => false,
+        PipelineError::Stage { source, .. } => matches!(
+            **source,
+            StageError::Scan(_)
+                | StageError::Conditioning(_)
+                | StageError::NoScans { .. }
+                | StageError::ScanIo { .. }
+                | StageError::ScanChanged { .. }
+                | StageError::ReservedName { .. }
+                | StageError::SameName { .. }
+                | StageError::UnequalScans { .. }
+                | StageError::Parameter(_)
+                | StageError::Ladder(_)
+                | StageError::NoWaves { .. }
+                | StageError::Rubber(_)
+                | StageError::RubberAtFiniteDeformation { .. }
+                | StageError::NoRelaxation { .. }
+        ),
+    }
+}
+
 impl From<PipelineError> for CliError {
     fn from(error: PipelineError) -> Self {
         if error.is_interrupt() {
             return Self::Interrupted;
         }
-        let is_input = match &error {
-            PipelineError::StaleInput { .. }
-            | PipelineError::Recipe(_)
-            | PipelineError::NoSuchStage { .. }
-            | PipelineError::ForcedOutside { .. } => true,
-            PipelineError::Artifact(_) => false,
-            PipelineError::Stage { source, .. } => matches!(
-                **source,
-                StageError::Scan(_)
-                    | StageError::Conditioning(_)
-                    | StageError::NoScans { .. }
-                    | StageError::ScanIo { .. }
-                    | StageError::ScanChanged { .. }
-                    | StageError::ReservedName { .. }
-                    | StageError::SameName { .. }
-                    | StageError::UnequalScans { .. }
-                    | StageError::Parameter(_)
-                    | StageError::Ladder(_)
-                    | StageError::NoWaves { .. }
-                    | StageError::Rubber(_)
-                    | StageError::RubberAtFiniteDeformation { .. }
-                    | StageError::NoRelaxation { .. }
-            ),
-        };
-        if is_input { Self::input(error) } else { Self::failure(error) }
+        if is_input(&error) { Self::input(error) } else { Self::failure(error) }
     }
 }

@@ -8,13 +8,16 @@ use std::sync::Mutex;
 
 use super::interrupt::Interrupt;
 use super::output::{json, note, print};
-use super::progress::Progress;
+use super::progress::{Bar, Progress};
 use super::recipe_options::RecipeOptions;
+use super::sweep::{note_recipes, tell};
 use super::{CliError, values};
 use crate::artifact::{Manifest, RunView};
 use crate::pipeline::{self, Event, Selection};
-use crate::stages::Stage;
+use crate::recipe::Recipe;
 use crate::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
+use crate::stages::{Stage, Watch};
+use crate::sweep;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -82,6 +85,9 @@ impl Run {
         }
         let out = self.recipe.out();
         let selection = Selection { only: self.only, from: self.from, force: self.force };
+        if recipe.sweep.is_some() {
+            return self.run_cases(&recipe, &out, quiet);
+        }
         let interrupt = Interrupt::install()?;
         let progress = Progress::new(quiet);
         let summaries = Mutex::new(Vec::new());
@@ -122,6 +128,46 @@ impl Run {
             return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);
         }
         note(quiet, format_args!("results in {}", out.display()));
+        Ok(())
+    }
+
+    /// All cases of a recipe with a section `[sweep]`, on this machine.
+    fn run_cases(&self, recipe: &Recipe, out: &Path, quiet: bool) -> Result<(), CliError> {
+        if self.only.is_some() || self.from.is_some() || self.force.is_some() {
+            return Err(CliError::input(
+                "the recipe has a section [sweep]: --only, --from and --force are for one case, whose folder \
+                 has a recipe of its own",
+            ));
+        }
+        let interrupt = Interrupt::install()?;
+        let bar = Bar::new(quiet, "cases");
+        let watch = Watch {
+            progress: &|done, total| bar.advance(done, total),
+            interrupted: interrupt.flag(),
+        };
+        // Paths in the recipes of the cases must lead somewhere from their folders too.
+        let recipe = recipe.clone().absolute().map_err(CliError::failure)?;
+        let out = &std::path::absolute(out).map_err(CliError::failure)?;
+        let manifest = sweep::run(&recipe, out, watch, &|case, event| tell(quiet, case, &event));
+        bar.finish();
+        let manifest = manifest?;
+        let cases = recipe.cases().map_err(CliError::input)?;
+        note_recipes(&sweep::Layout::new(out), &cases)?;
+        if self.json {
+            let seconds = manifest.seconds;
+            return print(&json(
+                &serde_json::json!({ "out": out, "cases": cases.len(), "seconds": seconds }),
+            )?);
+        }
+        let (count, tables) = (cases.len(), out.join(sweep::STAGE));
+        note(
+            quiet,
+            format_args!(
+                "{count} cases {:>8.2} s, tables in {}",
+                manifest.seconds,
+                tables.display()
+            ),
+        );
         Ok(())
     }
 }

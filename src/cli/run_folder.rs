@@ -2,6 +2,7 @@
 
 use super::CliError;
 use crate::artifact::RunView;
+use crate::sweep::CASES_FOLDER;
 use std::path::Path;
 
 /// View of a run folder.
@@ -17,4 +18,21 @@ pub(super) fn view(folder: &Path) -> Result<RunView, CliError> {
         )));
     }
     Ok(RunView::of(folder))
+}
+
+/// View of the run folder of one case.
+///
+/// # Errors
+/// [`CliError::Input`] if there is no such folder, or if it is that of a sweep.
+pub(super) fn view_of_case(folder: &Path) -> Result<RunView, CliError> {
+    let view = view(folder)?;
+    let cases = folder.join(CASES_FOLDER);
+    if cases.is_dir() {
+        return Err(CliError::input(format!(
+            "{} is the folder of a sweep: give that of one of its cases, in {}",
+            folder.display(),
+            cases.display()
+        )));
+    }
+    Ok(view)
 }

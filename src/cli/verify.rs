@@ -9,13 +9,18 @@ use serde::Serialize;
 use super::CliError;
 use super::last_run::LastRun;
 use super::output::{json, print};
-use crate::artifact::{Manifest, RunView, SOLVES_FOLDER, read_stored_solve};
+use crate::artifact::{
+    Manifest, PACK_EXTENSION, RunView, SOLVES_FOLDER, read_pack_info, read_stored_solve,
+};
 use crate::stages::Stage;
+use crate::sweep::{self, CASES_FOLDER, SURFACES_FOLDER};
 
 const EXAMPLES: &str = "\
 Examples:
   Whether a folder that was copied, or lay on a disk for a year, is whole:
-    asperity verify runs/asphalt";
+    asperity verify runs/asphalt
+  The same of a sweep, with all its cases:
+    asperity verify runs/sweep";
 
 /// Compare every file of a run folder with the digest it was written with.
 ///
@@ -53,6 +58,9 @@ impl Verify {
             damaged: damaged.err().into_iter().collect(),
         }));
         findings.extend(solves(&self.run.join(SOLVES_FOLDER))?);
+        for part in [SURFACES_FOLDER, CASES_FOLDER] {
+            findings.extend(run_folders(&self.run, &self.run.join(part))?);
+        }
         if findings.is_empty() {
             return Err(CliError::input(format!(
                 "{} holds no result: give the folder of a run, such as runs/asphalt",
@@ -86,7 +94,8 @@ fn stages(run: &Path) -> Result<Vec<Finding>, CliError> {
     let mut findings = Vec::new();
     for folder in folders(run)? {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if !Stage::CHAIN.iter().chain([&Stage::Sinusoid]).any(|stage| stage.name() == name) {
+        // What is linked is verified where it is.
+        if !is_stage(&name) || folder.is_symlink() {
             continue;
         }
         let view = RunView::of(run);
@@ -108,6 +117,30 @@ fn stages(run: &Path) -> Result<Vec<Finding>, CliError> {
     Ok(findings)
 }
 
+fn is_stage(name: &str) -> bool {
+    let stages = Stage::CHAIN.iter().chain([&Stage::Sinusoid]);
+    name == sweep::STAGE || stages.into_iter().any(|stage| stage.name() == name)
+}
+
+/// The stages of all run folders below a folder of a sweep, named by their paths in it.
+fn run_folders(sweep: &Path, folder: &Path) -> Result<Vec<Finding>, CliError> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let inside = |path: &Path| path.strip_prefix(sweep).unwrap_or(path).display().to_string();
+    let mut findings = stages(folder)?;
+    for finding in &mut findings {
+        finding.name = inside(&folder.join(&finding.name));
+    }
+    for inner in folders(folder)? {
+        let name = inner.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if !is_stage(&name) && !inner.is_symlink() {
+            findings.extend(run_folders(sweep, &inner)?);
+        }
+    }
+    Ok(findings)
+}
+
 /// The stored solves, if there are any.
 fn solves(store: &Path) -> Result<Option<Finding>, CliError> {
     if !store.is_dir() {
@@ -116,21 +149,32 @@ fn solves(store: &Path) -> Result<Option<Finding>, CliError> {
     let mut finding = Finding { name: SOLVES_FOLDER.into(), files: 0, damaged: Vec::new() };
     for folder in folders(store)? {
         for path in entries(&folder)? {
-            if path.extension().is_none_or(|extension| extension != "json") {
+            let kind = path.extension().unwrap_or_default();
+            let (key, intact) = if kind == "json" {
+                finding.files += 1;
+                match read_stored_solve(&path) {
+                    Ok(solve) => (solve.key, solve.intact),
+                    Err(error) => {
+                        finding.damaged.push(error.to_string());
+                        continue;
+                    }
+                }
+            } else if kind == PACK_EXTENSION {
+                finding.files += 1;
+                match read_pack_info(&path) {
+                    Ok(pack) => (pack.problem, true),
+                    Err(error) => {
+                        finding.damaged.push(error.to_string());
+                        continue;
+                    }
+                }
+            } else {
                 continue;
-            }
-            finding.files += 1;
-            match read_stored_solve(&path) {
-                Ok(solve) if !solve.intact => {
-                    finding.damaged.push(format!("{}: damaged", path.display()));
-                }
-                Ok(solve)
-                    if path.file_stem().is_none_or(|stem| *stem != *solve.key.to_string()) =>
-                {
-                    finding.damaged.push(format!("{}: holds another solve", path.display()));
-                }
-                Ok(_) => {}
-                Err(error) => finding.damaged.push(error.to_string()),
+            };
+            if !intact {
+                finding.damaged.push(format!("{}: damaged", path.display()));
+            } else if path.file_stem().is_none_or(|stem| *stem != *key.to_string()) {
+                finding.damaged.push(format!("{}: holds another solve", path.display()));
             }
         }
     }

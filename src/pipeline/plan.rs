@@ -22,14 +22,18 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    pub fn new(recipe: &'a Recipe) -> Result<Self, PipelineError> {
+    /// With the scans of the recipe, if they are known already: to digest them takes time.
+    pub fn new(recipe: &'a Recipe, known: Option<&[ScanFile]>) -> Result<Self, PipelineError> {
         let of = |stage| move |source| PipelineError::Stage { stage, source: Box::new(source) };
         let work = recipe.work()?;
         let (mut scans, mut published) = (Vec::new(), Vec::new());
         let material = match work {
             Work::Chain(chain) => {
                 if let Some(ingest) = chain.ingest {
-                    scans = ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?;
+                    scans = match known {
+                        Some(known) => known.to_vec(),
+                        None => ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?,
+                    };
                 }
                 published = tables::inputs(chain.tables).map_err(of(Stage::Tables))?;
                 let material = bem::rubber(chain.bem).map_err(of(Stage::Bem))?;
@@ -49,16 +53,9 @@ impl<'a> Plan<'a> {
         Ok(Self { work, scans, material, published })
     }
 
-    /// The stages of the recipe; a chain that states its waves needs no scans.
+    /// The stages of the recipe.
     pub fn stages(&self) -> Vec<Stage> {
-        let Work::Chain(chain) = self.work else { return vec![Stage::Sinusoid] };
-        let has = |stage: &Stage| match stage {
-            Stage::Ingest | Stage::Characterise => chain.ingest.is_some(),
-            Stage::Micro | Stage::Hybrid => chain.micro.is_some(),
-            Stage::Fem => chain.fem.is_some(),
-            _ => true,
-        };
-        Stage::CHAIN.into_iter().filter(has).collect()
+        stages(self.work)
     }
 
     /// Fails for a selected stage that the recipe does not have, and for a forced one that is not
@@ -192,6 +189,18 @@ impl<'a> Plan<'a> {
         };
         Ok((revision, schemas, parameters, inputs))
     }
+}
+
+/// The stages of a recipe; a chain that states its waves needs no scans.
+pub(super) fn stages(work: Work) -> Vec<Stage> {
+    let Work::Chain(chain) = work else { return vec![Stage::Sinusoid] };
+    let has = |stage: &Stage| match stage {
+        Stage::Ingest | Stage::Characterise => chain.ingest.is_some(),
+        Stage::Micro | Stage::Hybrid => chain.micro.is_some(),
+        Stage::Fem => chain.fem.is_some(),
+        _ => true,
+    };
+    Stage::CHAIN.into_iter().filter(has).collect()
 }
 
 /// Fails for a rubber that the half-space takes and finite elements do not, before the half-space

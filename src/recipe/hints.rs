@@ -30,6 +30,7 @@ pub(super) fn line(text: &str, violation: &Violation) -> Option<usize> {
         Violation::HybridWithoutMicro => "hybrid",
         Violation::Text(_) => "ingest.text",
         Violation::Conditioning(_) => "ingest.conditioning",
+        Violation::SeveralCases { .. } | Violation::SweepOfSinusoid => "sweep",
         Violation::MissingSection { .. } => return None,
     };
     let document = DeTable::parse(text).ok()?;

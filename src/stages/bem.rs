@@ -4,18 +4,17 @@ mod curve;
 mod family;
 mod reduction;
 mod rows;
+mod task;
+mod work;
 
 use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError};
+use super::{Context, StageError, Watch};
 use crate::artifact::{ArrayDataset, Metadata, Pending, RunView, SolveStore, Storage};
-use crate::contact::CurveValue;
 use crate::recipe::{Violation, demand};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
-use curve::{Curve, FieldSolution};
+use curve::FieldSolution;
 use family::{CurveResult, Family};
 pub(crate) use family::{FIRST_REALISATIONS, realisations_needed};
-use rayon::prelude::*;
-use reduction::LeftOut;
 use rows::FIELDS_DESCRIPTION;
 pub use rows::{
     CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, REALISATIONS_FILE,
@@ -24,8 +23,9 @@ pub use rows::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::path::{Path, PathBuf};
+pub use task::Task;
+use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 4;
@@ -34,7 +34,8 @@ pub const REVISION: u32 = 4;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bem {
-    /// Rubber file.
+    /// Rubber file. Left out beside `sweep.rubbers`.
+    #[serde(default, skip_serializing_if = "is_no_path")]
     pub rubber: PathBuf,
     /// Temperature in °C to which the rubber is shifted; its file needs a `[temperature]` section.
     /// Not set: the moduli as they stand in the file.
@@ -69,6 +70,10 @@ pub struct Bem {
     /// default.
     #[serde(default)]
     pub field_area_fractions: Vec<f64>,
+}
+
+fn is_no_path(path: &Path) -> bool {
+    path == Path::new("")
 }
 
 fn published_area_fractions() -> Vec<f64> {
@@ -160,13 +165,6 @@ pub fn rubber(parameters: &Bem) -> Result<RubberData, StageError> {
     Ok(read_rubber_at(&parameters.rubber, parameters.temperature_c)?)
 }
 
-/// What the curves are made of.
-struct Work<'a> {
-    parameters: &'a Bem,
-    rubber: &'a Rubber,
-    store: &'a SolveStore,
-}
-
 /// Solves the contacts that are not in the store and writes the results; returns warnings where
 /// the rubber was not measured at its temperature or at the frequencies that the surfaces excite.
 ///
@@ -184,23 +182,37 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
+    let mut families = families(parameters, &surfaces);
+    Work::new(parameters, &material.rubber, store, context.watch).solve_all(&mut families)?;
+    write(&mut context.pending, &families)?;
+    Ok(material.extrapolations(excited(parameters, &surfaces)))
+}
+
+/// The tasks of a run that are next and that a packed store does not have: all realisations, or those that
+/// an accuracy of the average needs as far as it is known yet.
+///
+/// # Errors
+/// As [`run`].
+pub fn missing(
+    parameters: &Bem,
+    rubber: &Rubber,
+    surfaces: &[Surface],
+    store: &SolveStore,
+    watch: Watch,
+) -> Result<Vec<Task>, StageError> {
+    let mut families = families(parameters, surfaces);
+    Work::new(parameters, rubber, store, watch).missing(&mut families)
+}
+
+fn families<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Family<'a>> {
     let tolerance = parameters.average_tolerance;
-    let mut families: Vec<Family> = surfaces
+    surfaces
         .chunk_by(|a, b| a.waves == b.waves)
         .flat_map(|of_one| {
             let speeds = parameters.speeds_mm_s.iter();
             speeds.map(move |speed| Family::new(of_one, *speed, tolerance))
         })
-        .collect();
-    let work = Work { parameters, rubber: &material.rubber, store };
-    let done = AtomicU64::new(0);
-    while families.iter().any(|family| !family.open().is_empty()) {
-        work.solve_open(&mut families, &done, context)?;
-        let Some(tolerance) = tolerance else { break };
-        families.par_iter_mut().try_for_each(|family| work.extend(family, tolerance, context))?;
-    }
-    write(&mut context.pending, &families)?;
-    Ok(material.extrapolations(excited(parameters, &surfaces)))
+        .collect()
 }
 
 /// The frequencies that the waves of all surfaces excite at all speeds.
@@ -209,112 +221,6 @@ fn excited(parameters: &Bem, surfaces: &[Surface]) -> Option<FrequencyRange> {
     let wavelengths = waves.filter(|wave| wave.amplitude != 0.0).map(|wave| wave.wavelength);
     let speeds = parameters.speeds_mm_s.iter().map(|speed| speed / 1e3);
     FrequencyRange::excited(wavelengths, speeds)
-}
-
-impl Work<'_> {
-    /// Solves all curves that are wanted, side by side.
-    fn solve_open(
-        &self,
-        families: &mut [Family],
-        done: &AtomicU64,
-        context: &Context,
-    ) -> Result<(), StageError> {
-        let total: usize = families.iter().map(|family| family.wanted).sum();
-        (context.progress)(done.load(Ordering::Relaxed), total as u64);
-        let tasks: Vec<(&Family, &Surface)> = families
-            .iter()
-            .flat_map(|family| family.open().iter().map(move |surface| (family, surface)))
-            .collect();
-        let results: Vec<CurveResult> = tasks
-            .par_iter()
-            .map(|(family, surface)| {
-                context.check_interrupt()?;
-                let result = self.of_family(family, surface, context)?;
-                (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total as u64);
-                Ok(result)
-            })
-            .collect::<Result<_, StageError>>()?;
-        let mut results = results.into_iter();
-        for family in families {
-            let count = family.open().len();
-            family.results.extend(results.by_ref().take(count));
-        }
-        Ok(())
-    }
-
-    /// The curve of one surface of a family, without the waves that the family leaves out of it.
-    fn of_family(
-        &self,
-        family: &Family,
-        surface: &Surface,
-        context: &Context,
-    ) -> Result<CurveResult, StageError> {
-        if surface.realisation as usize <= family.with_all_waves {
-            return self.one_curve(surface, family.speed_mm_s, context);
-        }
-        let reduced = family.left_out.reduce(surface);
-        let mut result = self.one_curve(&reduced, family.speed_mm_s, context)?;
-        family.left_out.complete(self.rubber, surface, &mut result.values);
-        Ok(result)
-    }
-
-    /// How many realisations a family needs; if many more, which waves they can do without.
-    fn extend(
-        &self,
-        family: &mut Family,
-        tolerance: f64,
-        context: &Context,
-    ) -> Result<(), StageError> {
-        let solved = family.results.len();
-        family.extend(tolerance);
-        // Fields show the whole surface.
-        let whole = !self.parameters.field_area_fractions.is_empty();
-        if whole || !LeftOut::pays(solved, family.wanted) {
-            return Ok(());
-        }
-        let full: Vec<&[CurveRow]> =
-            family.results.iter().map(|result| &result.values[..]).collect();
-        let surfaces = &family.surfaces[..solved];
-        let left_out = LeftOut::find(self.rubber, surfaces, &full, tolerance, |surface| {
-            self.one_curve(surface, family.speed_mm_s, context).map(|result| result.values)
-        });
-        context.check_interrupt()?;
-        if left_out != LeftOut::default() {
-            (family.left_out, family.with_all_waves) = (left_out, solved);
-        }
-        Ok(())
-    }
-
-    fn one_curve(
-        &self,
-        surface: &Surface,
-        speed_mm_s: f64,
-        context: &Context,
-    ) -> Result<CurveResult, StageError> {
-        let Self { parameters, rubber, store } = *self;
-        let mut curve =
-            Curve::new(parameters, rubber, surface, speed_mm_s, store, context.interrupted);
-        let (values, fields) = curve.compute(parameters).map_err(|source| {
-            if context.check_interrupt().is_err() {
-                return StageError::Interrupted;
-            }
-            let (waves, realisation) = (surface.waves, surface.realisation);
-            StageError::Contact { waves, realisation, speed_mm_s, source: Box::new(source) }
-        })?;
-        let row = |value: &CurveValue| CurveRow {
-            waves: surface.waves,
-            realisation: surface.realisation,
-            speed_mm_s,
-            contact_area_fraction: value.contact_area_fraction,
-            pressure_mpa: value.mean_pressure / 1e6,
-            friction_coefficient: value.friction_coefficient,
-            interpolation_error: value.interpolation_error,
-            discretisation_error: value.discretisation_error,
-            left_out_error: 0.0,
-        };
-        let values = values.iter().map(row).collect();
-        Ok(CurveResult { solves: curve.into_solves(), values, fields })
-    }
 }
 
 /// Writes the results by number of waves, realisation and speed.

@@ -1,31 +1,24 @@
 //! fem: friction over contact area with all waves at finite deformation, for surfaces that are
 //! small enough; what the other models are measured by.
 
-use super::bem::Bem;
-use super::micro::{columns, is_of};
+mod curve;
+mod task;
+
+use super::bem::{Bem, CURVES_FILE as BEM_CURVES, CurveRow};
 use super::realise::{Surface, read_surfaces};
-use super::{Context, SolveError, StageError, schema_of};
-use crate::artifact::{Digest, Metadata, Row, RunView, SchemaVersion, SolveStore};
-use crate::fem::error::FemError;
-use crate::fem::profile::RigidProfile;
-use crate::fem::steady::{BlockOptions, COLUMNS_RANGE, SteadyContact};
-use crate::multiscale::sampling::interpolation_errors;
-use crate::numerics::interpolation::CubicHermite;
+use super::{Context, StageError, schema_of};
+use crate::artifact::{ArtifactError, Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::recipe::{Violation, demand};
-use crate::rubber::{Rheology, Rubber};
-use crate::stages::bem::CURVES_FILE as BEM_CURVES;
-use crate::stages::bem::CurveRow;
+use crate::rubber::Rubber;
+use curve::CurveResult;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+pub use task::Task;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 4;
-/// Revision of the solver: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 3;
 
 /// Section `[fem]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -161,20 +154,15 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
     let (half_space, _) = run.read_table::<CurveRow>("bem", BEM_CURVES)?;
-    let tasks: Vec<(&Surface, f64)> = surfaces
-        .iter()
-        .flat_map(|surface| bem.speeds_mm_s.iter().map(move |speed| (surface, *speed)))
-        .filter(|(surface, speed)| half_space.iter().any(|row| is_of(row, surface, *speed)))
-        .collect();
+    let tasks = task::tasks(bem, &surfaces, &half_space);
     let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
-    (context.progress)(0, total);
+    (context.watch.progress)(0, total);
     let results: Vec<CurveResult> = tasks
         .par_iter()
-        .map(|(surface, speed)| {
+        .map(|task| {
             context.check_interrupt()?;
-            let guess = first_guess(&half_space, surface, *speed);
-            let result = one_curve(parameters, bem, rubber, surface, *speed, guess, store, context);
-            (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
+            let result = task.curve(parameters, &bem.area_fractions, rubber, store, context.watch);
+            (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
             result
         })
         .collect::<Result<_, StageError>>()?;
@@ -186,290 +174,23 @@ pub fn run(
     Ok(results.into_iter().flat_map(|result| result.warnings).collect())
 }
 
-/// Pressure in Pa of the smallest wanted area on the half-space.
-fn first_guess(half_space: &[CurveRow], surface: &Surface, speed_mm_s: f64) -> f64 {
-    let first = half_space.iter().find(|row| is_of(row, surface, speed_mm_s));
-    first.map_or(1e5, |row| row.pressure_mpa * 1e6)
-}
-
-#[allow(clippy::too_many_arguments)]
-fn one_curve(
+/// The tasks of a run that a packed store does not have; `curves` are those of the half-space.
+///
+/// # Errors
+/// [`ArtifactError::Io`].
+pub fn missing(
     parameters: &Fem,
     bem: &Bem,
     rubber: &Rubber,
-    surface: &Surface,
-    speed_mm_s: f64,
-    guess: f64,
+    surfaces: &[Surface],
+    curves: &[CurveRow],
     store: &SolveStore,
-    context: &Context,
-) -> Result<CurveResult, StageError> {
-    let (waves, realisation) = (surface.waves, surface.realisation);
-    let failed = |source: SolveError| match context.check_interrupt() {
-        Err(interrupt) => interrupt,
-        Ok(()) => StageError::FiniteDeformation {
-            waves,
-            realisation,
-            speed_mm_s,
-            source: Box::new(source),
-        },
-    };
-    let columns = columns_of(parameters, surface);
-    let new =
-        |columns| Solver::new(columns, parameters, rubber, surface, speed_mm_s, store, context);
-    let mut solver = new(columns).map_err(failed)?;
-    let ended = match solver.sweep(&bem.area_fractions, guess) {
-        Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => Some(error),
-        other => other.map_err(failed)?,
-    };
-    let mut rows = solver.values(&bem.area_fractions);
-    if parameters.estimate_mesh_error {
-        let mut coarser = new((columns / 2).max(*COLUMNS_RANGE.start())).map_err(failed)?;
-        match coarser.sweep(&bem.area_fractions, guess) {
-            Ok(_) | Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
-            Err(error) => return Err(failed(error)),
+) -> Result<Vec<Task>, ArtifactError> {
+    let mut missing = Vec::new();
+    for task in task::tasks(bem, surfaces, curves) {
+        if !task.is_finished(parameters, &bem.area_fractions, rubber, store)? {
+            missing.push(task);
         }
-        add_mesh_errors(&mut rows, &coarser.values(&bem.area_fractions));
     }
-    let missing = bem.area_fractions.len() - rows.len();
-    let warning = (missing > 0).then(|| {
-        let why = ended.map_or_else(
-            || "its area does not get there".into(),
-            |error| format!("{error}; try another fem.columns_per_shortest_wavelength"),
-        );
-        format!(
-            "{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {missing} of the contact \
-             areas are not reached: {why}"
-        )
-    });
-    let coarse = solver.coarse_mesh();
-    Ok(CurveResult {
-        rows,
-        solves: solver.solves,
-        warnings: warning.into_iter().chain(coarse).collect(),
-    })
-}
-
-/// Writes the differences to the values of a coarser mesh, where it has them.
-fn add_mesh_errors(rows: &mut [FemCurveRow], coarser: &[FemCurveRow]) {
-    for row in rows {
-        let same =
-            coarser.iter().find(|other| other.contact_area_fraction == row.contact_area_fraction);
-        row.discretisation_error =
-            same.map(|other| (row.friction_coefficient - other.friction_coefficient).abs());
-    }
-}
-
-/// Columns of the mesh of a surface.
-fn columns_of(parameters: &Fem, surface: &Surface) -> usize {
-    let waves = &surface.profile;
-    let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-    let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
-    let shortest = present.map(|wave| wave.wavelength).fold(period, f64::min);
-    columns(parameters.columns_per_shortest_wavelength, period, shortest)
-}
-
-/// The curve of one surface at one speed.
-struct CurveResult {
-    rows: Vec<FemCurveRow>,
-    solves: Vec<FemSolveRow>,
-    warnings: Vec<String>,
-}
-
-/// One surface at one speed.
-struct Solver<'a> {
-    surface: &'a Surface,
-    speed_mm_s: f64,
-    columns: usize,
-    key: serde_json::Value,
-    block: SteadyContact,
-    ratio: f64,
-    store: &'a SolveStore,
-    context: &'a Context<'a>,
-    /// Pressures in Pa that the store knew and the block did not pass. It passes them before it goes
-    /// on, so that a run that was stopped gives the numbers of one that was not.
-    skipped: Vec<f64>,
-    /// Of ascending pressure.
-    solves: Vec<FemSolveRow>,
-}
-
-/// Friction and heat may be this far apart, relative to a friction that is not next to nothing.
-const MOST_APART: f64 = 0.05;
-const LEAST_FRICTION: f64 = 0.05;
-/// Solves beyond which a sweep is not led on.
-const MOST_SOLVES: usize = 120;
-
-impl<'a> Solver<'a> {
-    fn new(
-        columns: usize,
-        parameters: &Fem,
-        rubber: &Rubber,
-        surface: &'a Surface,
-        speed_mm_s: f64,
-        store: &'a SolveStore,
-        context: &'a Context<'a>,
-    ) -> Result<Self, SolveError> {
-        let waves = &surface.profile;
-        let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let profile = RigidProfile::from_waves(waves, period);
-        let (rheology, options) = (Rheology::NeoHookean, BlockOptions::new(columns));
-        let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?;
-        let key = json!({
-            "solver": ["fem", SOLVER_REVISION],
-            "equilibrium_modulus": rubber.equilibrium_modulus,
-            "branches": rubber.branches,
-            "poisson_ratio": rubber.poisson_ratio,
-            "profile": waves,
-            "speed_mm_s": speed_mm_s,
-            "columns": columns,
-        });
-        let (ratio, solves) = (parameters.pressure_ratio, Vec::new());
-        let skipped = Vec::new();
-        Ok(Self {
-            surface,
-            speed_mm_s,
-            columns,
-            key,
-            block,
-            ratio,
-            store,
-            context,
-            skipped,
-            solves,
-        })
-    }
-
-    /// Solves pressures at the ratio of the recipe, from below the smallest to above the largest
-    /// area; returns why the path ended before that, if it did.
-    fn sweep(&mut self, areas: &[f64], guess: f64) -> Result<Option<FemError>, SolveError> {
-        let (smallest, largest) = (areas[0], areas[areas.len() - 1]);
-        let mut pressure = guess;
-        let mut row = self.point(pressure)?;
-        while row.contact_area_fraction > smallest && self.solves.len() < MOST_SOLVES {
-            pressure /= self.ratio;
-            row = self.point(pressure)?;
-        }
-        pressure = guess;
-        let last = self.solves.iter().max_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
-        let mut area = last.map_or(0.0, |row| row.contact_area_fraction);
-        let mut ended = None;
-        while area < largest && self.solves.len() < MOST_SOLVES {
-            pressure *= self.ratio;
-            match self.point(pressure) {
-                Ok(row) => area = row.contact_area_fraction,
-                Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
-                    ended = Some(error);
-                    break;
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        self.solves.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
-        Ok(ended)
-    }
-
-    /// A warning where friction and heat are apart: the mesh is too coarse for these contacts.
-    fn coarse_mesh(&self) -> Option<String> {
-        let apart = |row: &FemSolveRow| {
-            let difference = (row.friction_coefficient - row.friction_from_heat).abs();
-            difference > MOST_APART * row.friction_coefficient.abs().max(LEAST_FRICTION)
-        };
-        let solves: Vec<&FemSolveRow> = self.solves.iter().filter(|row| apart(row)).collect();
-        let largest = solves.iter().map(|row| row.contact_area_fraction).fold(0.0, f64::max);
-        let Surface { waves, realisation, .. } = self.surface;
-        (!solves.is_empty()).then(|| {
-            format!(
-                "{waves} waves, realisation {realisation}, {} mm/s: friction and heat are more than 5 % \
-                 apart in {} of {} solves, up to area {largest:.3}: more elements would tell them \
-                 better (fem.columns_per_shortest_wavelength)",
-                self.speed_mm_s,
-                solves.len(),
-                self.solves.len()
-            )
-        })
-    }
-
-    /// Friction at the areas that lie between solved ones. Nodes come into contact one by one, so
-    /// that the area may stand still from one pressure to the next; solves that add no area are
-    /// left out of the curve.
-    fn values(&self, areas: &[f64]) -> Vec<FemCurveRow> {
-        let mut rising: Vec<&FemSolveRow> = Vec::new();
-        for row in self.solves.iter().filter(|row| row.contact_area_fraction > 0.0) {
-            let before = rising.last().map_or(0.0, |last| last.contact_area_fraction);
-            if row.contact_area_fraction > before {
-                rising.push(row);
-            }
-        }
-        let column = |value: fn(&FemSolveRow) -> f64| -> Vec<f64> {
-            rising.iter().map(|row| value(row)).collect()
-        };
-        let areas_solved = column(|row| row.contact_area_fraction);
-        let (Some(first), Some(last)) = (areas_solved.first(), areas_solved.last()) else {
-            return Vec::new();
-        };
-        let friction = column(|row| row.friction_coefficient);
-        let logarithms: Vec<f64> = areas_solved.iter().map(|area| area.ln()).collect();
-        let curve = CubicHermite::smooth(logarithms.clone(), friction.clone());
-        let pressures = column(|row| row.pressure_mpa.ln());
-        let pressure = CubicHermite::monotone(logarithms.clone(), pressures);
-        let errors =
-            CubicHermite::linear(logarithms, interpolation_errors(&areas_solved, &friction));
-        areas
-            .iter()
-            .filter(|area| (*first..=*last).contains(*area))
-            .map(|area| FemCurveRow {
-                waves: self.surface.waves,
-                realisation: self.surface.realisation,
-                speed_mm_s: self.speed_mm_s,
-                contact_area_fraction: *area,
-                pressure_mpa: pressure.at(area.ln()).exp(),
-                friction_coefficient: curve.at(area.ln()),
-                interpolation_error: errors.at(area.ln()),
-                discretisation_error: None,
-            })
-            .collect()
-    }
-
-    fn point(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
-        if self.context.check_interrupt().is_err() {
-            return Err(SolveError::Interrupted);
-        }
-        self.key["pressure"] = json!(pressure);
-        let key = Digest::of_value(&self.key);
-        let (waves, realisation) = (self.surface.waves, self.surface.realisation);
-        let row = match self.store.get::<FemSolveRow>(&key)? {
-            Some(row) => {
-                self.skipped.push(pressure);
-                FemSolveRow { waves, realisation, ..row }
-            }
-            None => {
-                let row = self.solve(pressure)?;
-                self.store.put(&key, &row)?;
-                row
-            }
-        };
-        self.solves.push(row.clone());
-        Ok(row)
-    }
-
-    fn solve(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
-        for skipped in std::mem::take(&mut self.skipped) {
-            self.block.solve(skipped)?;
-        }
-        let start = Instant::now();
-        let solution = self.block.solve(pressure)?;
-        Ok(FemSolveRow {
-            waves: self.surface.waves,
-            realisation: self.surface.realisation,
-            speed_mm_s: self.speed_mm_s,
-            pressure_mpa: pressure / 1e6,
-            friction_coefficient: solution.friction_coefficient,
-            friction_from_heat: solution.hysteretic_friction,
-            contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
-            residual: solution.residual,
-            newton_steps: solution.newton_steps as u64,
-            columns: self.columns as u64,
-            seconds: start.elapsed().as_secs_f64(),
-        })
-    }
+    Ok(missing)
 }

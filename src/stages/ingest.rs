@@ -35,7 +35,8 @@ pub const REVISION: u32 = 5;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ingest {
-    /// Scan files, and folders of which every file is a scan.
+    /// Scan files, and folders of which every file is a scan. Left out beside `sweep.specimens`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scans: Vec<PathBuf>,
     /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD) are told
     /// by their content and need no description.
@@ -197,6 +198,7 @@ pub fn scans_schema() -> ArraysSchema {
 }
 
 /// A scan file with its digest.
+#[derive(Debug, Clone)]
 pub struct ScanFile {
     /// Where it is.
     pub path: PathBuf,
@@ -321,7 +323,7 @@ pub fn run(
                 .map(|scan| condition(scan, &ingest.conditioning))
                 .collect::<Result<Vec<_>, _>>()?;
             let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            (context.progress)(count, files.len() as u64);
+            (context.watch.progress)(count, files.len() as u64);
             Ok(ReadFile { scans, is_text, contradictions })
         })
         .collect();

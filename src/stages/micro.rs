@@ -2,23 +2,23 @@
 //! half-space and at finite deformation.
 
 mod curve;
+mod task;
 
 use super::bem::{CURVES_FILE, CurveRow};
 use super::realise::{Surface, read_surfaces};
-use super::{Context, SolveError, StageError, schema_of};
+use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::fem::steady::COLUMNS_RANGE;
-use crate::multiscale::scales::Scales;
-use crate::multiscale::{LocalLaw, SoftContact};
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
 use crate::surface::{Wave, wave};
-use curve::MicroCurve;
 pub(crate) use curve::law_of;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
+pub(crate) use task::is_of;
+pub use task::{Owner, PressedSurface, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 4;
@@ -177,15 +177,6 @@ pub fn schemas() -> Vec<SchemaVersion> {
     vec![schema_of::<SampleRow>(), schema_of::<LawRow>()]
 }
 
-/// One microscale at one speed, and the surfaces that have it.
-struct Task<'a> {
-    /// The approximations, or the realisations of them, whose microscale this is.
-    owners: Vec<Owner>,
-    speed_mm_s: f64,
-    micro: Vec<Wave>,
-    surfaces: Vec<&'a Surface>,
-}
-
 /// Samples the microscales over the pressures that the macro contacts ask for; returns warnings.
 ///
 /// # Errors
@@ -200,15 +191,15 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
     let (curves, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
-    let tasks = tasks(parameters, &surfaces, &curves)?;
+    let tasks = task::tasks(parameters, &surfaces, &curves)?;
     let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
-    (context.progress)(0, total);
+    (context.watch.progress)(0, total);
     let results: Vec<TaskResult> = tasks
         .par_iter()
         .map(|task| {
             context.check_interrupt()?;
-            let result = one_task(parameters, rubber, task, &curves, store, context)?;
-            (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
+            let result = task.sample(parameters, rubber, store, context.watch)?;
+            (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
             Ok(result)
         })
         .collect::<Result<_, StageError>>()?;
@@ -234,69 +225,25 @@ pub fn run(
     Ok(warnings)
 }
 
-fn tasks<'a>(
+/// The tasks of a run that a packed store does not have; `curves` are those of the half-space.
+///
+/// # Errors
+/// As [`run`].
+pub fn missing(
     parameters: &Micro,
-    surfaces: &'a [Surface],
+    rubber: &Rubber,
+    surfaces: &[Surface],
     curves: &[CurveRow],
-) -> Result<Vec<Task<'a>>, StageError> {
-    let mut speeds: Vec<f64> = curves.iter().map(|row| row.speed_mm_s).collect();
-    speeds.sort_by(f64::total_cmp);
-    speeds.dedup();
-    let mut tasks: Vec<Task> = Vec::new();
-    for surface in surfaces {
-        let Scales { micro, macroscale } =
-            Scales::part(&surface.profile, parameters.rms_slope_threshold);
-        if micro.is_empty() {
-            continue;
-        }
-        if macroscale.is_empty() {
-            let (waves, threshold) = (surface.waves, parameters.rms_slope_threshold);
-            return Err(StageError::NoMacroscale { waves, threshold });
-        }
-        let solved = |speed: &&f64| curves.iter().any(|row| is_of(row, surface, **speed));
-        for &speed_mm_s in speeds.iter().filter(solved) {
-            let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
-            let owner = Owner { waves: surface.waves, realisation };
-            let shared = tasks
-                .iter_mut()
-                .find(|task| task.speed_mm_s == speed_mm_s && same_waves(&task.micro, &micro));
-            if let Some(task) = shared {
-                task.surfaces.push(surface);
-                if !task.owners.contains(&owner) {
-                    task.owners.push(owner);
-                }
-                continue;
-            }
-            let (owners, surfaces, micro) = (vec![owner], vec![surface], micro.clone());
-            tasks.push(Task { owners, speed_mm_s, micro, surfaces });
-        }
+    store: &SolveStore,
+) -> Result<Vec<Task>, StageError> {
+    let mut missing = task::tasks(parameters, surfaces, curves)?;
+    let mut finished = Vec::with_capacity(missing.len());
+    for task in &missing {
+        finished.push(task.is_finished(parameters, rubber, store)?);
     }
-    Ok(tasks)
-}
-
-/// Whether a value of the half-space is of that surface and speed: not all surfaces that were drawn
-/// are needed.
-pub(crate) fn is_of(row: &CurveRow, surface: &Surface, speed_mm_s: f64) -> bool {
-    (row.waves, row.realisation) == (surface.waves, surface.realisation)
-        && row.speed_mm_s == speed_mm_s
-}
-
-/// An approximation, or one realisation of it, as the tables name it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Owner {
-    waves: u32,
-    /// 0 for all of them.
-    realisation: u32,
-}
-
-impl Task<'_> {
-    /// "8 and 9 waves", for messages.
-    fn owner_names(&self) -> String {
-        let mut counts: Vec<u32> = self.owners.iter().map(|owner| owner.waves).collect();
-        counts.dedup();
-        let counts: Vec<String> = counts.iter().map(u32::to_string).collect();
-        format!("{} waves", counts.join(" and "))
-    }
+    let mut finished = finished.into_iter();
+    missing.retain(|_| !finished.next().unwrap_or(false));
+    Ok(missing)
 }
 
 /// Relative difference of two amplitudes, or phase difference, that is but round-off: fits of eight
@@ -331,57 +278,6 @@ impl TaskResult {
         }
         Self { samples, law, warning: self.warning }
     }
-}
-
-fn one_task(
-    parameters: &Micro,
-    rubber: &Rubber,
-    task: &Task,
-    curves: &[CurveRow],
-    store: &SolveStore,
-    context: &Context,
-) -> Result<TaskResult, StageError> {
-    let failed = |source: SolveError| match context.check_interrupt() {
-        Err(interrupt) => interrupt,
-        Ok(()) => StageError::Microscale {
-            owners: task.owner_names(),
-            speed_mm_s: task.speed_mm_s,
-            source: Box::new(source),
-        },
-    };
-    let mut curve = MicroCurve::new(parameters, rubber, task, store, context.interrupted);
-    let (law, rows) = curve.law().map_err(failed)?;
-    let largest = largest_pressure(parameters, rubber, task, curves, &law).map_err(failed)?;
-    let (mut samples, warning) = curve.sample(largest).map_err(failed)?;
-    if parameters.estimate_mesh_error {
-        curve.estimate_mesh_error(&mut samples).map_err(failed)?;
-    }
-    Ok(TaskResult { samples, law: rows, warning })
-}
-
-/// The largest local pressure in Pa that the macro contacts of a task reach.
-fn largest_pressure(
-    parameters: &Micro,
-    rubber: &Rubber,
-    task: &Task,
-    curves: &[CurveRow],
-    law: &LocalLaw,
-) -> Result<f64, SolveError> {
-    let mut largest = 0.0_f64;
-    for surface in &task.surfaces {
-        let pressures = curves
-            .iter()
-            .filter(|row| is_of(row, surface, task.speed_mm_s))
-            .map(|row| row.pressure_mpa * 1e6);
-        let mean = pressures.fold(0.0, f64::max);
-        let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
-        let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
-        let speed = task.speed_mm_s / 1e3;
-        let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?;
-        let solution = contact.solve(mean)?;
-        largest = solution.pressure.into_iter().fold(largest, f64::max);
-    }
-    Ok(largest)
 }
 
 /// Columns of the mesh of a microscale: so many elements on its shortest wave.

@@ -97,13 +97,30 @@ impl std::fmt::Display for Stage {
 pub struct Context<'a> {
     /// The folder of the result under way.
     pub pending: Pending<'a>,
+    /// Who looks on.
+    pub watch: Watch<'a>,
+}
+
+impl Context<'_> {
+    /// Fails if the user has interrupted.
+    ///
+    /// # Errors
+    /// [`StageError::Interrupted`].
+    pub fn check_interrupt(&self) -> Result<(), StageError> {
+        self.watch.check_interrupt()
+    }
+}
+
+/// Progress to whoever looks on, and their interrupt.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
     /// Called as work is done: pieces done, pieces known so far.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
     /// Set by the user's interrupt.
     pub interrupted: &'a AtomicBool,
 }
 
-impl Context<'_> {
+impl Watch<'_> {
     /// Fails if the user has interrupted.
     ///
     /// # Errors

@@ -25,8 +25,9 @@ pub struct Realise {
     /// Most realisations that a `tolerance` may take, 1000 if not set.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub most_realisations: Option<u32>,
-    /// Seed of the phases: same seed, same surfaces, on every machine.
-    pub seed: u64,
+    /// Seed of the phases: same seed, same surfaces, on every machine. Left out beside `sweep.seeds`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
 }
 
 impl Realise {
@@ -42,7 +43,8 @@ impl Realise {
         let wanted = "a number, or a `tolerance` that it follows from";
         demand(self.drawn() > 0, "realise.realisations", 0, wanted)?;
         // TOML's integers are signed.
-        demand(self.seed < 1 << 63, "realise.seed", self.seed, "below 2^63")
+        let seed = self.seed.unwrap_or_default();
+        demand(seed < 1 << 63, "realise.seed", seed, "below 2^63")
     }
 
     /// Number of surfaces that are drawn: as many as there may be need of. To draw one costs nothing.
@@ -98,6 +100,7 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let (fitted, _) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
+    let seed = parameters.seed.unwrap_or_default();
     let mut rows = Vec::new();
     for &waves in &parameters.waves {
         let scales: Vec<SineScale> = fitted
@@ -112,7 +115,7 @@ pub fn run(
             return Err(StageError::NoWaves { waves });
         }
         for realisation in 1..=parameters.drawn() {
-            let surface = random_phases(&scales, parameters.seed, u64::from(realisation));
+            let surface = random_phases(&scales, seed, u64::from(realisation));
             rows.extend((1..).zip(surface).map(|(scale, wave)| SurfaceRow {
                 waves,
                 realisation,
@@ -128,7 +131,7 @@ pub fn run(
 }
 
 /// A realised surface.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
     /// Number of waves of the approximation, its name.
     pub waves: u32,

@@ -265,14 +265,14 @@ fn solve_all(
 ) -> Result<Vec<TwoMeshes>, StageError> {
     let done = AtomicU64::new(0);
     let total = 2 * cases.len() as u64;
-    (context.progress)(0, total);
+    (context.watch.progress)(0, total);
     let solve = |problem: &problem::Problem| {
         context.check_interrupt()?;
         let outcomes = problem.outcomes(rubber, store).map_err(|source| StageError::Solve {
             problem: problem.to_string(),
             source: Box::new(source),
         })?;
-        (context.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
+        (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
         Ok::<_, StageError>(outcomes)
     };
     cases.par_iter().map(|case| Ok([solve(&case.finer)?, solve(&case.coarser)?])).collect()

@@ -40,7 +40,7 @@ fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
     let cases: [(&str, &str, &[&str]); 37] = [
         ("seed = 1", "seed = ", &["line 27", "seed ="]),
         ("seed = 1", "sed = 1", &["line 27", "unknown field `sed`", "`seed`"]),
-        ("seed = 1", "", &["missing field `seed`"]),
+        ("seed = 1", "", &["realise.seed", "not given", "sweep.seeds"]),
         ("seed = 1", "seed = -1", &["line 27", "seed = -1", "invalid value"]),
         ("[realise]", "[realize]", &["unknown field `realize`"]),
         ("speeds_mm_s", "speeds_m_s", &["unknown field `speeds_m_s`", "`speeds_mm_s`"]),

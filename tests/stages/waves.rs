@@ -7,7 +7,7 @@ use asperity::stages::characterise::{
     AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY,
 };
 use asperity::stages::realise::{self, Realise, Surface, read_surfaces};
-use asperity::stages::{Context, StageError};
+use asperity::stages::{Context, StageError, Watch};
 use asperity::surface::SineScale;
 use asperity::surface::ladder::Undetermined;
 use asperity::surface::realisation::random_phases;
@@ -37,7 +37,8 @@ fn commit<T>(
 ) -> Result<T, StageError> {
     let interrupted = AtomicBool::new(false);
     let pending: Pending = folder.begin(stage)?;
-    let mut context = Context { pending, progress: &|_, _| {}, interrupted: &interrupted };
+    let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
+    let mut context = Context { pending, watch };
     let result = compute(&mut context)?;
     let identity = Identity {
         stage: stage.into(),
@@ -143,8 +144,12 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     commit(&folder, "approximate", |c| approximate::run(&parameters(0.25, &[3, 4]), &folder, c))
         .unwrap();
     let realised = |seed| -> Vec<Surface> {
-        let parameters =
-            Realise { waves: vec![3, 4], realisations: Some(5), most_realisations: None, seed };
+        let parameters = Realise {
+            waves: vec![3, 4],
+            realisations: Some(5),
+            most_realisations: None,
+            seed: Some(seed),
+        };
         commit(&folder, "realise", |c| realise::run(&parameters, &folder, c)).unwrap();
         read_surfaces(&folder).unwrap()
     };

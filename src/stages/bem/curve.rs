@@ -1,7 +1,7 @@
 //! One curve of friction over contact area: one surface at one speed.
 
 use super::{Bem, SolveRow};
-use crate::artifact::{ArrayDataset, Attribute, Digest, SolveStore};
+use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore, Solves};
 use crate::contact::curve::{CurveError, friction_curve};
 use crate::contact::refine::{
     GridError, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refinement, Watched, on_grid,
@@ -12,7 +12,7 @@ use crate::rubber::Rubber;
 use crate::stages::SolveError;
 use crate::stages::realise::Surface;
 use crate::surface::wave;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,7 +41,7 @@ pub(super) struct Curve<'a> {
     /// Points of the coarsest grid with one.
     first_points: usize,
     period: f64,
-    store: &'a SolveStore,
+    stored: Solves<'a>,
     interrupted: &'a AtomicBool,
     /// Contacts by their number of grid points, set up when first needed.
     contacts: BTreeMap<usize, SlidingContact>,
@@ -64,27 +64,26 @@ impl<'a> Curve<'a> {
         speed_mm_s: f64,
         store: &'a SolveStore,
         interrupted: &'a AtomicBool,
-    ) -> Self {
-        let present = || surface.profile.iter().filter(|wave| wave.amplitude != 0.0);
-        let shortest = present().map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
-        let period = surface.period();
-        let points = |per_wave: u32| {
-            ((f64::from(per_wave) * period / shortest).round() as usize).next_power_of_two()
-        };
-        Self {
+    ) -> Result<Self, ArtifactError> {
+        Ok(Self {
             rubber,
             surface,
             speed_mm_s,
             fewest_contact_points: f64::from(parameters.fewest_contact_points),
             grid_tolerance: parameters.grid_tolerance,
-            base_points: points(parameters.points_per_shortest_wavelength),
-            first_points: points(FIRST_POINTS_PER_WAVE),
-            period,
-            store,
+            base_points: base_points(parameters, surface),
+            first_points: points(surface, FIRST_POINTS_PER_WAVE),
+            period: surface.period(),
+            stored: store.problem(&problem(rubber, surface, speed_mm_s))?,
             interrupted,
             contacts: BTreeMap::new(),
             solves: Vec::new(),
-        }
+        })
+    }
+
+    /// Notes that every solve of a task is stored.
+    pub fn finish(&mut self, task: &Digest) -> Result<(), ArtifactError> {
+        self.stored.finish(task)
     }
 
     /// Friction at the wanted areas, and the fields where they are wanted.
@@ -191,7 +190,7 @@ impl<'a> Curve<'a> {
             return Err(SolveError::Interrupted);
         }
         let key = self.key(pressure, points);
-        if let Some(row) = self.store.get::<SolveRow>(&key)? {
+        if let Some(row) = self.stored.get::<SolveRow>(&key)? {
             // The name of the approximation and the number of the realisation are no part of the
             // problem, so the same surface may have been solved under others.
             let (waves, realisation) = (self.surface.waves, self.surface.realisation);
@@ -214,7 +213,7 @@ impl<'a> Curve<'a> {
             grid_points: points as u64,
             seconds: start.elapsed().as_secs_f64(),
         };
-        self.store.put(&key, &row)?;
+        self.stored.put(&key, &row)?;
         Ok(row)
     }
 
@@ -242,16 +241,10 @@ impl<'a> Curve<'a> {
 
     /// Digest of all that determines a solve.
     fn key(&self, pressure: f64, points: usize) -> Digest {
-        Digest::of_value(&json!({
-            "solver": ["bem", SOLVER_REVISION],
-            "equilibrium_modulus": self.rubber.equilibrium_modulus,
-            "branches": self.rubber.branches,
-            "poisson_ratio": self.rubber.poisson_ratio,
-            "profile": self.surface.profile,
-            "speed_mm_s": self.speed_mm_s,
-            "pressure": pressure,
-            "points": points,
-        }))
+        let mut all = problem_parts(self.rubber, self.surface, self.speed_mm_s);
+        all["pressure"] = json!(pressure);
+        all["points"] = json!(points);
+        Digest::of_value(&all)
     }
 
     fn field(&mut self, value: &CurveValue) -> Result<FieldSolution, SolveError> {
@@ -265,6 +258,34 @@ impl<'a> Curve<'a> {
         );
         Ok(FieldSolution { group, area_fraction, spacing: self.period / points as f64, solution })
     }
+}
+
+/// Points of the grid of a surface that all pressures are solved on, unless their contacts need more.
+pub(super) fn base_points(parameters: &Bem, surface: &Surface) -> usize {
+    points(surface, parameters.points_per_shortest_wavelength)
+}
+
+/// Points of a grid with so many on the shortest wave: the next power of two.
+fn points(surface: &Surface, per_wave: u32) -> usize {
+    let present = surface.profile.iter().filter(|wave| wave.amplitude != 0.0);
+    let shortest = present.map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
+    ((f64::from(per_wave) * surface.period() / shortest).round() as usize).next_power_of_two()
+}
+
+/// Digest of what all solves of a curve have in common.
+pub(super) fn problem(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Digest {
+    Digest::of_value(&problem_parts(rubber, surface, speed_mm_s))
+}
+
+fn problem_parts(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Value {
+    json!({
+        "solver": ["bem", SOLVER_REVISION],
+        "equilibrium_modulus": rubber.equilibrium_modulus,
+        "branches": rubber.branches,
+        "poisson_ratio": rubber.poisson_ratio,
+        "profile": surface.profile,
+        "speed_mm_s": speed_mm_s,
+    })
 }
 
 fn on_its_grid(row: &SolveRow) -> OnGrid {

@@ -49,6 +49,20 @@ impl<'a> Family<'a> {
         &self.surfaces[self.results.len()..self.wanted]
     }
 
+    /// Whether the curve of that surface is solved with all waves.
+    pub fn with_all_waves_of(&self, surface: &Surface) -> bool {
+        surface.realisation as usize <= self.with_all_waves
+    }
+
+    /// The surface as it is solved, without the waves that are left out of it.
+    pub fn to_solve(&self, surface: &Surface) -> Surface {
+        if self.with_all_waves_of(surface) {
+            surface.clone()
+        } else {
+            self.left_out.reduce(surface)
+        }
+    }
+
     /// The wanted number from the curves so far; it stays if they will do or if there are no more.
     pub fn extend(&mut self, tolerance: f64) {
         let solved = self.results.len();

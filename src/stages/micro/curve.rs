@@ -1,7 +1,7 @@
 //! One microscale at one speed, sampled as densely as the tolerance needs.
 
-use super::{COLUMNS_KEY, LawRow, Micro, Owner, SampleRow, Task, columns};
-use crate::artifact::{Digest, SolveStore};
+use super::{COLUMNS_KEY, LawRow, Micro, Owner, SampleRow, Task};
+use crate::artifact::{ArtifactError, Digest, SolveStore, Solves};
 use crate::contact::{ContactSolution, SlidingContact};
 use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
@@ -11,7 +11,7 @@ use crate::multiscale::{LawEnd, LocalLaw};
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
 use crate::surface::{Wave, wave};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -34,8 +34,9 @@ const MARGIN: f64 = 1.02;
 pub(super) struct MicroCurve<'a> {
     parameters: &'a Micro,
     rubber: &'a Rubber,
-    task: &'a Task<'a>,
+    task: &'a Task,
     store: &'a SolveStore,
+    stored: Solves<'a>,
     interrupted: &'a AtomicBool,
     period: f64,
     columns: usize,
@@ -50,26 +51,41 @@ impl<'a> MicroCurve<'a> {
     pub fn new(
         parameters: &'a Micro,
         rubber: &'a Rubber,
-        task: &'a Task<'a>,
+        task: &'a Task,
         store: &'a SolveStore,
         interrupted: &'a AtomicBool,
-    ) -> Self {
-        let period = task.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let shortest = task.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
-        let columns = columns(parameters.columns_per_shortest_wavelength, period, shortest);
-        let (half_space, block) = (None, None);
-        Self {
+    ) -> Result<Self, ArtifactError> {
+        let columns = task.columns(parameters);
+        Self::on(columns, parameters, rubber, task, store, interrupted)
+    }
+
+    fn on(
+        columns: usize,
+        parameters: &'a Micro,
+        rubber: &'a Rubber,
+        task: &'a Task,
+        store: &'a SolveStore,
+        interrupted: &'a AtomicBool,
+    ) -> Result<Self, ArtifactError> {
+        let stored = store.problem(&problem(rubber, &task.micro, task.speed_mm_s, columns))?;
+        Ok(Self {
             parameters,
             rubber,
             task,
             store,
+            stored,
             interrupted,
-            period,
+            period: task.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max),
             columns,
-            half_space,
-            block,
+            half_space: None,
+            block: None,
             skipped: Vec::new(),
-        }
+        })
+    }
+
+    /// Notes that every sample of a task is stored.
+    pub fn finish(&mut self, task: &Digest) -> Result<(), ArtifactError> {
+        self.stored.finish(task)
     }
 
     /// The repulsive law of the half-space up to full contact.
@@ -157,8 +173,8 @@ impl<'a> MicroCurve<'a> {
     /// neighbouring samples count too. Beyond the last solution on the coarser mesh there is none.
     pub fn estimate_mesh_error(&self, rows: &mut [SampleRow]) -> Result<(), SolveError> {
         let Self { parameters, rubber, task, store, interrupted, .. } = *self;
-        let mut coarser = Self::new(parameters, rubber, task, store, interrupted);
-        coarser.columns = (self.columns / 2).max(*COLUMNS_RANGE.start());
+        let columns = (self.columns / 2).max(*COLUMNS_RANGE.start());
+        let mut coarser = Self::on(columns, parameters, rubber, task, store, interrupted)?;
         let mut differences = Vec::with_capacity(rows.len());
         for row in rows.iter() {
             match coarser.row(row.pressure_mpa * 1e6) {
@@ -222,7 +238,7 @@ impl<'a> MicroCurve<'a> {
         let (Owner { waves, realisation }, speed_mm_s) =
             (self.task.owners[0], self.task.speed_mm_s);
         let key = self.key(pressure);
-        if let Some(row) = self.store.get::<SampleRow>(&key)? {
+        if let Some(row) = self.stored.get::<SampleRow>(&key)? {
             self.skipped.push(pressure);
             return Ok(SampleRow { waves, realisation, ..row });
         }
@@ -250,7 +266,7 @@ impl<'a> MicroCurve<'a> {
             newton_steps: block.newton_steps as u64,
             seconds: start.elapsed().as_secs_f64(),
         };
-        self.store.put(&key, &row)?;
+        self.stored.put(&key, &row)?;
         Ok(row)
     }
 
@@ -291,18 +307,28 @@ impl<'a> MicroCurve<'a> {
 
     /// Digest of all that determines a sample.
     fn key(&self, pressure: f64) -> Digest {
-        let micro: &[Wave] = &self.task.micro;
-        Digest::of_value(&json!({
-            "solver": ["micro", SOLVER_REVISION],
-            "equilibrium_modulus": self.rubber.equilibrium_modulus,
-            "branches": self.rubber.branches,
-            "poisson_ratio": self.rubber.poisson_ratio,
-            "profile": micro,
-            "speed_mm_s": self.task.speed_mm_s,
-            "pressure": pressure,
-            "columns": self.columns,
-        }))
+        let Task { micro, speed_mm_s, .. } = self.task;
+        let mut all = problem_parts(self.rubber, micro, *speed_mm_s, self.columns);
+        all["pressure"] = json!(pressure);
+        Digest::of_value(&all)
     }
+}
+
+/// Digest of what all samples of a microscale have in common.
+pub(super) fn problem(rubber: &Rubber, micro: &[Wave], speed_mm_s: f64, columns: usize) -> Digest {
+    Digest::of_value(&problem_parts(rubber, micro, speed_mm_s, columns))
+}
+
+fn problem_parts(rubber: &Rubber, micro: &[Wave], speed_mm_s: f64, columns: usize) -> Value {
+    json!({
+        "solver": ["micro", SOLVER_REVISION],
+        "equilibrium_modulus": rubber.equilibrium_modulus,
+        "branches": rubber.branches,
+        "poisson_ratio": rubber.poisson_ratio,
+        "profile": micro,
+        "speed_mm_s": speed_mm_s,
+        "columns": columns,
+    })
 }
 
 impl SampleRow {

@@ -1,4 +1,8 @@
-//! Store of single results, the unit of a sweep, so that a stopped sweep continues where it stopped.
+//! Store of single results, so that a stopped run or sweep continues where it stopped.
+
+mod pack;
+
+pub use pack::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, Solves, read_pack_info};
 
 use std::fs::{self, Permissions};
 use std::io::{self, Write};
@@ -26,6 +30,7 @@ const VERSION: u32 = 1;
 #[derive(Debug, Clone)]
 pub struct SolveStore {
     dir: PathBuf,
+    packed: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -45,7 +50,16 @@ impl SolveStore {
     pub fn open(dir: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
         let dir = dir.into();
         fs::create_dir_all(&dir).map_err(ArtifactError::io("create", &dir))?;
-        Ok(Self { dir })
+        Ok(Self { dir, packed: false })
+    }
+
+    /// Opens a store that keeps all solves of a problem in one file (see [`Solves`]), for the shards of a sweep:
+    /// a file for each of a million solves is more than shared file systems bear.
+    ///
+    /// # Errors
+    /// As [`SolveStore::open`].
+    pub fn open_packed(dir: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
+        Ok(Self { packed: true, ..Self::open(dir)? })
     }
 
     /// The result under that key; none if there is none, if it is damaged or of another version,
@@ -83,12 +97,7 @@ impl SolveStore {
         key: &Digest,
         value: &T,
     ) -> Result<(), ArtifactError> {
-        let unfit = |error: serde_json::Error| ArtifactError::NotRepresentable {
-            what: format!("result {key:#}"),
-            reason: error.to_string(),
-        };
-        let payload = serde_json::to_value(value).map_err(unfit)?;
-        T::deserialize(&payload).map_err(unfit)?;
+        let payload = representable(key, value)?;
         let entry = Entry {
             schema: SOLVE_SCHEMA.to_owned(),
             version: VERSION,
@@ -96,7 +105,7 @@ impl SolveStore {
             digest_of_payload: Digest::of_value(&payload),
             payload,
         };
-        let bytes = serde_json::to_vec(&entry).map_err(unfit)?;
+        let bytes = serde_json::to_vec(&entry).map_err(|error| unfit(key, &error))?;
         write_by_rename(&self.path(key), &bytes)
     }
 
@@ -139,6 +148,21 @@ fn intact_payload(bytes: &[u8], key: &Digest) -> Option<Value> {
     let as_asked = entry.schema == SOLVE_SCHEMA && entry.version == VERSION && entry.key == *key;
     (as_asked && Digest::of_value(&entry.payload) == entry.digest_of_payload)
         .then_some(entry.payload)
+}
+
+/// The JSON form of a value that reads back.
+fn representable<T: Serialize + DeserializeOwned>(
+    key: &Digest,
+    value: &T,
+) -> Result<Value, ArtifactError> {
+    let payload = serde_json::to_value(value).map_err(|error| unfit(key, &error))?;
+    T::deserialize(&payload).map_err(|error| unfit(key, &error))?;
+    Ok(payload)
+}
+
+fn unfit(key: &Digest, error: &serde_json::Error) -> ArtifactError {
+    let what = format!("result {key:#}");
+    ArtifactError::NotRepresentable { what, reason: error.to_string() }
 }
 
 fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {

@@ -1,0 +1,176 @@
+//! `asperity sweep`: many cases on many machines.
+
+mod collect;
+mod plan;
+mod shard;
+mod status;
+mod submit;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+
+use super::CliError;
+use super::interrupt::Interrupt;
+use super::last_run::LastRun;
+use super::output::note;
+use super::progress::Bar;
+use super::recipe_options::is_input;
+use crate::pipeline::Event;
+use crate::recipe::Case;
+use crate::stages::Watch;
+use crate::sweep::{Layout, RECIPE_FILE, SweepError};
+
+/// Spread the cases of a recipe over many machines: plan, submit or run shards, collect.
+#[derive(Debug, Subcommand)]
+pub(super) enum Sweep {
+    Plan(plan::Plan),
+    Submit(submit::Submit),
+    Run(shard::Run),
+    Status(status::Status),
+    Collect(collect::Collect),
+}
+
+impl Sweep {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CliError`].
+    pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
+        match self {
+            Self::Plan(command) => command.run(quiet),
+            Self::Submit(command) => command.run(),
+            Self::Run(command) => command.run(quiet),
+            Self::Status(command) => command.run(),
+            Self::Collect(command) => command.run(quiet),
+        }
+    }
+}
+
+/// The plan of a sweep.
+#[derive(Debug, Args)]
+struct PlanPath {
+    /// The plan.json that `asperity sweep plan` printed.
+    plan: PathBuf,
+}
+
+impl PlanPath {
+    fn absolute(&self) -> Result<PathBuf, CliError> {
+        std::path::absolute(&self.plan).map_err(CliError::failure)
+    }
+}
+
+/// Runs what can be watched and interrupted.
+fn watched<T>(
+    quiet: bool,
+    what: &str,
+    work: impl FnOnce(Watch) -> Result<T, SweepError>,
+) -> Result<T, CliError> {
+    let interrupt = Interrupt::install()?;
+    let bar = Bar::new(quiet, what);
+    let result = work(Watch {
+        progress: &|done, total| bar.advance(done, total),
+        interrupted: interrupt.flag(),
+    });
+    bar.finish();
+    Ok(result?)
+}
+
+/// The warnings of the stages that a case computes, and its folder once it is done.
+pub(super) fn tell(quiet: bool, case: &Case, event: &Event) {
+    if let Event::Finished(stage, manifest) = event {
+        for warning in &manifest.warnings {
+            note(quiet, format_args!("  warning: {}, {stage}: {warning}", case.folder.display()));
+        }
+    }
+}
+
+/// Notes in the folder of each case which recipe its results are of, as `asperity run` does.
+pub(super) fn note_recipes(layout: &Layout, cases: &[Case]) -> Result<(), CliError> {
+    for case in cases {
+        let folder = layout.case(case);
+        let path = folder.join(RECIPE_FILE);
+        // A case that was left out has none.
+        if !path.exists() {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).map_err(|error| {
+            CliError::failure(format!("cannot read {}: {error}", path.display()))
+        })?;
+        LastRun::new(&path, text, &[], None)?.write(&folder)?;
+    }
+    Ok(())
+}
+
+/// Sets the number of threads: what was asked for, or what the scheduler gives this process.
+fn set_threads(asked: Option<usize>) -> Result<usize, CliError> {
+    if asked == Some(0) {
+        return Err(CliError::input("--threads is 0: give at least 1"));
+    }
+    let given = given_cores(|name| std::env::var(name).ok());
+    if let Some(threads) = asked.or(given) {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build_global()
+            .map_err(CliError::failure)?;
+    }
+    Ok(rayon::current_num_threads())
+}
+
+/// Cores that a scheduler gives this process: Slurm says their number, HyperQueue lists them.
+fn given_cores(variable: impl Fn(&str) -> Option<String>) -> Option<usize> {
+    let listed = || Some(variable("HQ_CPUS")?.split(',').count());
+    let number = variable("SLURM_CPUS_PER_TASK").and_then(|text| text.parse().ok());
+    number.or_else(listed).filter(|cores| *cores > 0)
+}
+
+/// "3.2 min" and the like.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// A path for people: relative to the working folder, if it is in it.
+fn display(path: &Path) -> String {
+    let here = std::env::current_dir().unwrap_or_default();
+    path.strip_prefix(here).unwrap_or(path).display().to_string()
+}
+
+impl From<SweepError> for CliError {
+    fn from(error: SweepError) -> Self {
+        if error.is_interrupt() {
+            return Self::Interrupted;
+        }
+        match error {
+            SweepError::Case { ref source, .. } if is_input(source) => Self::input(error),
+            SweepError::Recipe(_)
+            | SweepError::NoPlan { .. }
+            | SweepError::BadPlan { .. }
+            | SweepError::OtherVersion { .. }
+            | SweepError::NoSuchShard { .. }
+            | SweepError::RubberChanged { .. }
+            | SweepError::ScansChanged { .. }
+            | SweepError::Slurm(_) => Self::input(error),
+            _ => Self::failure(error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scheduler_says_how_many_cores_there_are() {
+        let given = |set: &'static str, value: &'static str| {
+            given_cores(|name| (name == set).then(|| value.to_owned()))
+        };
+        assert_eq!(given("SLURM_CPUS_PER_TASK", "4"), Some(4));
+        assert_eq!(given("SLURM_CPUS_PER_TASK", "0"), None);
+        assert_eq!(given("HQ_CPUS", "2,3,7"), Some(3));
+        assert_eq!(given("OTHER", "5"), None);
+    }
+}

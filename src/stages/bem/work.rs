@@ -1,0 +1,156 @@
+//! The curves of all families: those that are missing, solved side by side.
+
+use super::curve::Curve;
+use super::family::{CurveResult, Family};
+use super::reduction::LeftOut;
+use super::{Bem, CurveRow, Task};
+use crate::artifact::SolveStore;
+use crate::contact::CurveValue;
+use crate::rubber::Rubber;
+use crate::stages::realise::Surface;
+use crate::stages::{StageError, Watch};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What the curves are made of.
+pub(super) struct Work<'a> {
+    parameters: &'a Bem,
+    rubber: &'a Rubber,
+    store: &'a SolveStore,
+    watch: Watch<'a>,
+    done: AtomicU64,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(
+        parameters: &'a Bem,
+        rubber: &'a Rubber,
+        store: &'a SolveStore,
+        watch: Watch<'a>,
+    ) -> Self {
+        Self { parameters, rubber, store, watch, done: AtomicU64::new(0) }
+    }
+
+    /// Solves the curves of all families, as many as their averages need.
+    pub fn solve_all(&self, families: &mut [Family]) -> Result<(), StageError> {
+        while families.iter().any(|family| !family.open().is_empty()) {
+            self.solve_open(families)?;
+            self.extend_all(families)?;
+        }
+        Ok(())
+    }
+
+    /// The curves that are wanted next and that the store does not have; none if it has all. How many
+    /// realisations an accuracy needs follows from those it has.
+    pub fn missing(&self, families: &mut [Family]) -> Result<Vec<Task>, StageError> {
+        while families.iter().any(|family| !family.open().is_empty()) {
+            let mut missing = Vec::new();
+            for family in &*families {
+                for surface in family.open() {
+                    let task =
+                        Task { surface: family.to_solve(surface), speed_mm_s: family.speed_mm_s };
+                    if !task.is_finished(self.parameters, self.rubber, self.store)? {
+                        missing.push(task);
+                    }
+                }
+            }
+            if !missing.is_empty() {
+                return Ok(missing);
+            }
+            if self.parameters.average_tolerance.is_none() {
+                break;
+            }
+            self.solve_open(families)?;
+            self.extend_all(families)?;
+        }
+        Ok(Vec::new())
+    }
+
+    fn extend_all(&self, families: &mut [Family]) -> Result<(), StageError> {
+        let Some(tolerance) = self.parameters.average_tolerance else { return Ok(()) };
+        families.par_iter_mut().try_for_each(|family| self.extend(family, tolerance))
+    }
+
+    /// Solves all curves that are wanted, side by side.
+    fn solve_open(&self, families: &mut [Family]) -> Result<(), StageError> {
+        let total: usize = families.iter().map(|family| family.wanted).sum();
+        (self.watch.progress)(self.done.load(Ordering::Relaxed), total as u64);
+        let tasks: Vec<(&Family, &Surface)> = families
+            .iter()
+            .flat_map(|family| family.open().iter().map(move |surface| (family, surface)))
+            .collect();
+        let results: Vec<CurveResult> = tasks
+            .par_iter()
+            .map(|(family, surface)| {
+                self.watch.check_interrupt()?;
+                let result = self.of_family(family, surface)?;
+                (self.watch.progress)(1 + self.done.fetch_add(1, Ordering::Relaxed), total as u64);
+                Ok(result)
+            })
+            .collect::<Result<_, StageError>>()?;
+        let mut results = results.into_iter();
+        for family in families {
+            let count = family.open().len();
+            family.results.extend(results.by_ref().take(count));
+        }
+        Ok(())
+    }
+
+    /// The curve of one surface of a family, without the waves that the family leaves out of it.
+    fn of_family(&self, family: &Family, surface: &Surface) -> Result<CurveResult, StageError> {
+        let mut result = self.one_curve(&family.to_solve(surface), family.speed_mm_s)?;
+        if !family.with_all_waves_of(surface) {
+            family.left_out.complete(self.rubber, surface, &mut result.values);
+        }
+        Ok(result)
+    }
+
+    /// How many realisations a family needs; if many more, which waves they can do without.
+    fn extend(&self, family: &mut Family, tolerance: f64) -> Result<(), StageError> {
+        let solved = family.results.len();
+        family.extend(tolerance);
+        // Fields show the whole surface.
+        let whole = !self.parameters.field_area_fractions.is_empty();
+        if whole || !LeftOut::pays(solved, family.wanted) {
+            return Ok(());
+        }
+        let full: Vec<&[CurveRow]> =
+            family.results.iter().map(|result| &result.values[..]).collect();
+        let surfaces = &family.surfaces[..solved];
+        let left_out = LeftOut::find(self.rubber, surfaces, &full, tolerance, |surface| {
+            self.one_curve(surface, family.speed_mm_s).map(|result| result.values)
+        });
+        self.watch.check_interrupt()?;
+        if left_out != LeftOut::default() {
+            (family.left_out, family.with_all_waves) = (left_out, solved);
+        }
+        Ok(())
+    }
+
+    pub fn one_curve(&self, surface: &Surface, speed_mm_s: f64) -> Result<CurveResult, StageError> {
+        let Self { parameters, rubber, store, watch, .. } = *self;
+        let mut curve =
+            Curve::new(parameters, rubber, surface, speed_mm_s, store, watch.interrupted)?;
+        let (values, fields) = curve.compute(parameters).map_err(|source| {
+            if watch.check_interrupt().is_err() {
+                return StageError::Interrupted;
+            }
+            let (waves, realisation) = (surface.waves, surface.realisation);
+            StageError::Contact { waves, realisation, speed_mm_s, source: Box::new(source) }
+        })?;
+        curve.finish(&Task::key_of(parameters, rubber, surface, speed_mm_s))?;
+        let row = |value: &CurveValue| CurveRow {
+            waves: surface.waves,
+            realisation: surface.realisation,
+            speed_mm_s,
+            contact_area_fraction: value.contact_area_fraction,
+            pressure_mpa: value.mean_pressure / 1e6,
+            friction_coefficient: value.friction_coefficient,
+            interpolation_error: value.interpolation_error,
+            discretisation_error: value.discretisation_error,
+            left_out_error: 0.0,
+        };
+        let values = values.iter().map(row).collect();
+        Ok(CurveResult { solves: curve.into_solves(), values, fields })
+    }
+}

@@ -1,0 +1,245 @@
+//! One curve of friction over contact area: one surface at one speed, solved along its pressures.
+
+use super::{Fem, FemCurveRow, FemSolveRow};
+use crate::artifact::{ArtifactError, Digest, SolveStore, Solves};
+use crate::fem::error::FemError;
+use crate::fem::profile::RigidProfile;
+use crate::fem::steady::{BlockOptions, SteadyContact};
+use crate::multiscale::sampling::interpolation_errors;
+use crate::numerics::interpolation::CubicHermite;
+use crate::rubber::{Rheology, Rubber};
+use crate::stages::realise::Surface;
+use crate::stages::{SolveError, Watch};
+use serde_json::{Value, json};
+use std::time::Instant;
+
+/// Revision of the solver: part of the key of every stored solve.
+const SOLVER_REVISION: u32 = 3;
+
+/// The curve of one surface at one speed.
+pub(super) struct CurveResult {
+    pub rows: Vec<FemCurveRow>,
+    pub solves: Vec<FemSolveRow>,
+    pub warnings: Vec<String>,
+}
+
+/// One surface at one speed.
+pub(super) struct Solver<'a> {
+    surface: &'a Surface,
+    speed_mm_s: f64,
+    columns: usize,
+    key: Value,
+    block: SteadyContact,
+    ratio: f64,
+    stored: Solves<'a>,
+    watch: Watch<'a>,
+    /// Pressures in Pa that the store knew and the block did not pass. It passes them before it goes
+    /// on, so that a run that was stopped gives the numbers of one that was not.
+    skipped: Vec<f64>,
+    /// Of ascending pressure.
+    solves: Vec<FemSolveRow>,
+}
+
+/// Friction and heat may be this far apart, relative to a friction that is not next to nothing.
+const MOST_APART: f64 = 0.05;
+const LEAST_FRICTION: f64 = 0.05;
+/// Solves beyond which a sweep is not led on.
+const MOST_SOLVES: usize = 120;
+
+impl<'a> Solver<'a> {
+    pub fn new(
+        columns: usize,
+        parameters: &Fem,
+        rubber: &Rubber,
+        surface: &'a Surface,
+        speed_mm_s: f64,
+        store: &'a SolveStore,
+        watch: Watch<'a>,
+    ) -> Result<Self, SolveError> {
+        let waves = &surface.profile;
+        let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let profile = RigidProfile::from_waves(waves, period);
+        let (rheology, options) = (Rheology::NeoHookean, BlockOptions::new(columns));
+        let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?;
+        let key = problem_parts(rubber, surface, speed_mm_s, columns);
+        Ok(Self {
+            surface,
+            speed_mm_s,
+            columns,
+            stored: store.problem(&Digest::of_value(&key))?,
+            key,
+            block,
+            ratio: parameters.pressure_ratio,
+            watch,
+            skipped: Vec::new(),
+            solves: Vec::new(),
+        })
+    }
+
+    /// Solves pressures at the ratio of the recipe, from below the smallest to above the largest
+    /// area; returns why the path ended before that, if it did.
+    pub fn sweep(&mut self, areas: &[f64], guess: f64) -> Result<Option<FemError>, SolveError> {
+        let (smallest, largest) = (areas[0], areas[areas.len() - 1]);
+        let mut pressure = guess;
+        let mut row = self.point(pressure)?;
+        while row.contact_area_fraction > smallest && self.solves.len() < MOST_SOLVES {
+            pressure /= self.ratio;
+            row = self.point(pressure)?;
+        }
+        pressure = guess;
+        let last = self.solves.iter().max_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
+        let mut area = last.map_or(0.0, |row| row.contact_area_fraction);
+        let mut ended = None;
+        while area < largest && self.solves.len() < MOST_SOLVES {
+            pressure *= self.ratio;
+            match self.point(pressure) {
+                Ok(row) => area = row.contact_area_fraction,
+                Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
+                    ended = Some(error);
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        self.solves.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
+        Ok(ended)
+    }
+
+    /// A warning where friction and heat are apart: the mesh is too coarse for these contacts.
+    pub fn coarse_mesh(&self) -> Option<String> {
+        let apart = |row: &FemSolveRow| {
+            let difference = (row.friction_coefficient - row.friction_from_heat).abs();
+            difference > MOST_APART * row.friction_coefficient.abs().max(LEAST_FRICTION)
+        };
+        let solves: Vec<&FemSolveRow> = self.solves.iter().filter(|row| apart(row)).collect();
+        let largest = solves.iter().map(|row| row.contact_area_fraction).fold(0.0, f64::max);
+        let Surface { waves, realisation, .. } = self.surface;
+        (!solves.is_empty()).then(|| {
+            format!(
+                "{waves} waves, realisation {realisation}, {} mm/s: friction and heat are more than 5 % \
+                 apart in {} of {} solves, up to area {largest:.3}: more elements would tell them \
+                 better (fem.columns_per_shortest_wavelength)",
+                self.speed_mm_s,
+                solves.len(),
+                self.solves.len()
+            )
+        })
+    }
+
+    /// Friction at the areas that lie between solved ones. Nodes come into contact one by one, so
+    /// that the area may stand still from one pressure to the next; solves that add no area are
+    /// left out of the curve.
+    pub fn values(&self, areas: &[f64]) -> Vec<FemCurveRow> {
+        let mut rising: Vec<&FemSolveRow> = Vec::new();
+        for row in self.solves.iter().filter(|row| row.contact_area_fraction > 0.0) {
+            let before = rising.last().map_or(0.0, |last| last.contact_area_fraction);
+            if row.contact_area_fraction > before {
+                rising.push(row);
+            }
+        }
+        let column = |value: fn(&FemSolveRow) -> f64| -> Vec<f64> {
+            rising.iter().map(|row| value(row)).collect()
+        };
+        let areas_solved = column(|row| row.contact_area_fraction);
+        let (Some(first), Some(last)) = (areas_solved.first(), areas_solved.last()) else {
+            return Vec::new();
+        };
+        let friction = column(|row| row.friction_coefficient);
+        let logarithms: Vec<f64> = areas_solved.iter().map(|area| area.ln()).collect();
+        let curve = CubicHermite::smooth(logarithms.clone(), friction.clone());
+        let pressures = column(|row| row.pressure_mpa.ln());
+        let pressure = CubicHermite::monotone(logarithms.clone(), pressures);
+        let errors =
+            CubicHermite::linear(logarithms, interpolation_errors(&areas_solved, &friction));
+        areas
+            .iter()
+            .filter(|area| (*first..=*last).contains(*area))
+            .map(|area| FemCurveRow {
+                waves: self.surface.waves,
+                realisation: self.surface.realisation,
+                speed_mm_s: self.speed_mm_s,
+                contact_area_fraction: *area,
+                pressure_mpa: pressure.at(area.ln()).exp(),
+                friction_coefficient: curve.at(area.ln()),
+                interpolation_error: errors.at(area.ln()),
+                discretisation_error: None,
+            })
+            .collect()
+    }
+
+    fn point(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
+        if self.watch.check_interrupt().is_err() {
+            return Err(SolveError::Interrupted);
+        }
+        self.key["pressure"] = json!(pressure);
+        let key = Digest::of_value(&self.key);
+        let (waves, realisation) = (self.surface.waves, self.surface.realisation);
+        let row = match self.stored.get::<FemSolveRow>(&key)? {
+            Some(row) => {
+                self.skipped.push(pressure);
+                FemSolveRow { waves, realisation, ..row }
+            }
+            None => {
+                let row = self.solve(pressure)?;
+                self.stored.put(&key, &row)?;
+                row
+            }
+        };
+        self.solves.push(row.clone());
+        Ok(row)
+    }
+
+    fn solve(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
+        for skipped in std::mem::take(&mut self.skipped) {
+            self.block.solve(skipped)?;
+        }
+        let start = Instant::now();
+        let solution = self.block.solve(pressure)?;
+        Ok(FemSolveRow {
+            waves: self.surface.waves,
+            realisation: self.surface.realisation,
+            speed_mm_s: self.speed_mm_s,
+            pressure_mpa: pressure / 1e6,
+            friction_coefficient: solution.friction_coefficient,
+            friction_from_heat: solution.hysteretic_friction,
+            contact_area_fraction: solution.contact_area_fraction,
+            mean_separation_mm: solution.mean_separation * 1e3,
+            residual: solution.residual,
+            newton_steps: solution.newton_steps as u64,
+            columns: self.columns as u64,
+            seconds: start.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// All solves by ascending pressure.
+    pub fn into_solves(self) -> Vec<FemSolveRow> {
+        self.solves
+    }
+
+    /// Notes that every solve of a task is stored.
+    pub fn finish(&mut self, task: &Digest) -> Result<(), ArtifactError> {
+        self.stored.finish(task)
+    }
+}
+
+/// Digest of what all solves of a curve have in common.
+pub(super) fn problem(
+    rubber: &Rubber,
+    surface: &Surface,
+    speed_mm_s: f64,
+    columns: usize,
+) -> Digest {
+    Digest::of_value(&problem_parts(rubber, surface, speed_mm_s, columns))
+}
+
+fn problem_parts(rubber: &Rubber, surface: &Surface, speed_mm_s: f64, columns: usize) -> Value {
+    json!({
+        "solver": ["fem", SOLVER_REVISION],
+        "equilibrium_modulus": rubber.equilibrium_modulus,
+        "branches": rubber.branches,
+        "poisson_ratio": rubber.poisson_ratio,
+        "profile": surface.profile,
+        "speed_mm_s": speed_mm_s,
+        "columns": columns,
+    })
+}

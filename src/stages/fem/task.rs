@@ -1,0 +1,164 @@
+//! One curve as a task, which any machine can solve.
+
+use super::curve::{CurveResult, Solver, problem};
+use super::{Fem, FemCurveRow};
+use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::fem::error::FemError;
+use crate::fem::steady::COLUMNS_RANGE;
+use crate::rubber::Rubber;
+use crate::stages::bem::{Bem, CurveRow};
+use crate::stages::micro::{columns, is_of};
+use crate::stages::realise::Surface;
+use crate::stages::{SolveError, StageError, Watch};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+/// Friction over contact area of one surface at one speed, with all waves at finite deformation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// The surface.
+    pub surface: Surface,
+    /// Sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// Pressure in Pa of the smallest wanted area on the half-space: where the sweep begins.
+    pub first_guess: f64,
+}
+
+/// The surfaces and speeds that the half-space has curves of.
+pub(super) fn tasks(bem: &Bem, surfaces: &[Surface], half_space: &[CurveRow]) -> Vec<Task> {
+    let mut tasks = Vec::new();
+    for surface in surfaces {
+        for &speed_mm_s in &bem.speeds_mm_s {
+            let first = half_space.iter().find(|row| is_of(row, surface, speed_mm_s));
+            tasks.extend(first.map(|row| Task {
+                surface: surface.clone(),
+                speed_mm_s,
+                first_guess: row.pressure_mpa * 1e6,
+            }));
+        }
+    }
+    tasks
+}
+
+impl Task {
+    /// Digest of surface, rubber, speed and mesh: under which the solves are kept.
+    pub fn problem(&self, parameters: &Fem, rubber: &Rubber) -> Digest {
+        problem(rubber, &self.surface, self.speed_mm_s, self.columns(parameters))
+    }
+
+    /// Digest of all that determines which solves the task asks for.
+    pub fn key(&self, parameters: &Fem, area_fractions: &[f64], rubber: &Rubber) -> Digest {
+        Digest::of_value(&json!({
+            "stage": ["fem", super::REVISION],
+            "problem": self.problem(parameters, rubber),
+            "parameters": parameters,
+            "area_fractions": area_fractions,
+            "first_guess": self.first_guess,
+        }))
+    }
+
+    /// Elements over the period of the surface.
+    pub fn columns(&self, parameters: &Fem) -> usize {
+        columns_of(parameters, &self.surface)
+    }
+
+    /// Whether a packed store has all solves of the task.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`].
+    pub fn is_finished(
+        &self,
+        parameters: &Fem,
+        area_fractions: &[f64],
+        rubber: &Rubber,
+        store: &SolveStore,
+    ) -> Result<bool, ArtifactError> {
+        let solves = store.problem(&self.problem(parameters, rubber))?;
+        Ok(solves.is_finished(&self.key(parameters, area_fractions, rubber)))
+    }
+
+    /// Solves what a packed store does not have.
+    ///
+    /// # Errors
+    /// [`StageError::FiniteDeformation`], [`StageError::Interrupted`], those of the store.
+    pub fn solve(
+        &self,
+        parameters: &Fem,
+        area_fractions: &[f64],
+        rubber: &Rubber,
+        store: &SolveStore,
+        watch: Watch,
+    ) -> Result<(), StageError> {
+        self.curve(parameters, area_fractions, rubber, store, watch).map(drop)
+    }
+
+    pub(super) fn curve(
+        &self,
+        parameters: &Fem,
+        area_fractions: &[f64],
+        rubber: &Rubber,
+        store: &SolveStore,
+        watch: Watch,
+    ) -> Result<CurveResult, StageError> {
+        let Self { surface, speed_mm_s, first_guess } = self;
+        let (waves, realisation) = (surface.waves, surface.realisation);
+        let failed = |source: SolveError| match watch.check_interrupt() {
+            Err(interrupt) => interrupt,
+            Ok(()) => {
+                let (speed_mm_s, source) = (*speed_mm_s, Box::new(source));
+                StageError::FiniteDeformation { waves, realisation, speed_mm_s, source }
+            }
+        };
+        let columns = self.columns(parameters);
+        let new =
+            |columns| Solver::new(columns, parameters, rubber, surface, *speed_mm_s, store, watch);
+        let mut solver = new(columns).map_err(failed)?;
+        let ended = match solver.sweep(area_fractions, *first_guess) {
+            Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => Some(error),
+            other => other.map_err(failed)?,
+        };
+        let mut rows = solver.values(area_fractions);
+        if parameters.estimate_mesh_error {
+            let mut coarser = new((columns / 2).max(*COLUMNS_RANGE.start())).map_err(failed)?;
+            match coarser.sweep(area_fractions, *first_guess) {
+                Ok(_) | Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
+                Err(error) => return Err(failed(error)),
+            }
+            add_mesh_errors(&mut rows, &coarser.values(area_fractions));
+        }
+        solver.finish(&self.key(parameters, area_fractions, rubber))?;
+        let missing = area_fractions.len() - rows.len();
+        let warning = (missing > 0).then(|| {
+            let why = ended.map_or_else(
+                || "its area does not get there".into(),
+                |error| format!("{error}; try another fem.columns_per_shortest_wavelength"),
+            );
+            format!(
+                "{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {missing} of the \
+                 contact areas are not reached: {why}"
+            )
+        });
+        let coarse = solver.coarse_mesh();
+        let warnings = warning.into_iter().chain(coarse).collect();
+        Ok(CurveResult { rows, solves: solver.into_solves(), warnings })
+    }
+}
+
+/// Writes the differences to the values of a coarser mesh, where it has them.
+fn add_mesh_errors(rows: &mut [FemCurveRow], coarser: &[FemCurveRow]) {
+    for row in rows {
+        let same =
+            coarser.iter().find(|other| other.contact_area_fraction == row.contact_area_fraction);
+        row.discretisation_error =
+            same.map(|other| (row.friction_coefficient - other.friction_coefficient).abs());
+    }
+}
+
+/// Columns of the mesh of a surface.
+pub(super) fn columns_of(parameters: &Fem, surface: &Surface) -> usize {
+    let waves = &surface.profile;
+    let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+    let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
+    let shortest = present.map(|wave| wave.wavelength).fold(period, f64::min);
+    columns(parameters.columns_per_shortest_wavelength, period, shortest)
+}

@@ -1,0 +1,219 @@
+//! One microscale at one speed: what it is pressed by, and its sampling, on any machine.
+
+use super::curve::{MicroCurve, problem};
+use super::{Micro, TaskResult, columns, same_waves};
+use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::multiscale::scales::Scales;
+use crate::multiscale::{LocalLaw, SoftContact};
+use crate::rubber::Rubber;
+use crate::stages::bem::CurveRow;
+use crate::stages::realise::Surface;
+use crate::stages::{SolveError, StageError, Watch};
+use crate::surface::Wave;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+/// One microscale at one speed, and the surfaces that have it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// The approximations, or the realisations of them, whose microscale this is.
+    pub owners: Vec<Owner>,
+    /// Sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// Its waves.
+    pub micro: Vec<Wave>,
+    /// The surfaces that press it.
+    pub surfaces: Vec<PressedSurface>,
+}
+
+/// An approximation, or one realisation of it, as the tables name it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Owner {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Number of the realisation; 0 for all of them.
+    pub realisation: u32,
+}
+
+/// A surface with the largest mean pressure of its half-space contacts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PressedSurface {
+    /// The surface.
+    pub surface: Surface,
+    /// Mean pressure in MPa.
+    pub most_pressure_mpa: f64,
+    /// Contact area fraction at that pressure.
+    pub contact_area_fraction: f64,
+}
+
+/// The microscales of the surfaces at the speeds of the curves.
+pub(super) fn tasks(
+    parameters: &Micro,
+    surfaces: &[Surface],
+    curves: &[CurveRow],
+) -> Result<Vec<Task>, StageError> {
+    let mut speeds: Vec<f64> = curves.iter().map(|row| row.speed_mm_s).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let mut tasks: Vec<Task> = Vec::new();
+    for surface in surfaces {
+        let Scales { micro, macroscale } =
+            Scales::part(&surface.profile, parameters.rms_slope_threshold);
+        if micro.is_empty() {
+            continue;
+        }
+        if macroscale.is_empty() {
+            let (waves, threshold) = (surface.waves, parameters.rms_slope_threshold);
+            return Err(StageError::NoMacroscale { waves, threshold });
+        }
+        for &speed_mm_s in &speeds {
+            let Some(pressed) = PressedSurface::of(surface, curves, speed_mm_s) else { continue };
+            let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
+            let owner = Owner { waves: surface.waves, realisation };
+            let shared = tasks
+                .iter_mut()
+                .find(|task| task.speed_mm_s == speed_mm_s && same_waves(&task.micro, &micro));
+            if let Some(task) = shared {
+                task.surfaces.push(pressed);
+                if !task.owners.contains(&owner) {
+                    task.owners.push(owner);
+                }
+                continue;
+            }
+            let (owners, surfaces, micro) = (vec![owner], vec![pressed], micro.clone());
+            tasks.push(Task { owners, speed_mm_s, micro, surfaces });
+        }
+    }
+    Ok(tasks)
+}
+
+/// Whether a value of the half-space is of that surface and speed: not all surfaces that were drawn
+/// are needed.
+pub(crate) fn is_of(row: &CurveRow, surface: &Surface, speed_mm_s: f64) -> bool {
+    (row.waves, row.realisation) == (surface.waves, surface.realisation)
+        && row.speed_mm_s == speed_mm_s
+}
+
+impl PressedSurface {
+    /// None without a curve at that speed.
+    fn of(surface: &Surface, curves: &[CurveRow], speed_mm_s: f64) -> Option<Self> {
+        let own = curves.iter().filter(|row| is_of(row, surface, speed_mm_s));
+        let most = own.max_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa))?;
+        Some(Self {
+            surface: surface.clone(),
+            most_pressure_mpa: most.pressure_mpa,
+            contact_area_fraction: most.contact_area_fraction,
+        })
+    }
+}
+
+impl Task {
+    /// Digest of microscale, rubber, speed and mesh: under which the samples are kept.
+    pub fn problem(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
+        problem(rubber, &self.micro, self.speed_mm_s, self.columns(parameters))
+    }
+
+    /// Digest of all that determines which samples the task asks for.
+    pub fn key(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
+        let surfaces: Vec<_> = self
+            .surfaces
+            .iter()
+            .map(|pressed| json!([pressed.surface.profile, pressed.most_pressure_mpa]))
+            .collect();
+        Digest::of_value(&json!({
+            "stage": ["micro", super::REVISION],
+            "problem": self.problem(parameters, rubber),
+            "parameters": parameters,
+            "surfaces": surfaces,
+        }))
+    }
+
+    /// Elements over the period of the microscale.
+    pub fn columns(&self, parameters: &Micro) -> usize {
+        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let shortest = self.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
+        columns(parameters.columns_per_shortest_wavelength, period, shortest)
+    }
+
+    /// Whether a packed store has all samples of the task.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`].
+    pub fn is_finished(
+        &self,
+        parameters: &Micro,
+        rubber: &Rubber,
+        store: &SolveStore,
+    ) -> Result<bool, ArtifactError> {
+        let solves = store.problem(&self.problem(parameters, rubber))?;
+        Ok(solves.is_finished(&self.key(parameters, rubber)))
+    }
+
+    /// Solves what a packed store does not have.
+    ///
+    /// # Errors
+    /// [`StageError::Microscale`], [`StageError::Interrupted`], those of the store.
+    pub fn solve(
+        &self,
+        parameters: &Micro,
+        rubber: &Rubber,
+        store: &SolveStore,
+        watch: Watch,
+    ) -> Result<(), StageError> {
+        self.sample(parameters, rubber, store, watch).map(drop)
+    }
+
+    pub(super) fn sample(
+        &self,
+        parameters: &Micro,
+        rubber: &Rubber,
+        store: &SolveStore,
+        watch: Watch,
+    ) -> Result<TaskResult, StageError> {
+        let failed = |source: SolveError| match watch.check_interrupt() {
+            Err(interrupt) => interrupt,
+            Ok(()) => StageError::Microscale {
+                owners: self.owner_names(),
+                speed_mm_s: self.speed_mm_s,
+                source: Box::new(source),
+            },
+        };
+        let mut curve = MicroCurve::new(parameters, rubber, self, store, watch.interrupted)?;
+        let (law, rows) = curve.law().map_err(failed)?;
+        let largest = self.largest_pressure(parameters, rubber, &law).map_err(failed)?;
+        let (mut samples, warning) = curve.sample(largest).map_err(failed)?;
+        if parameters.estimate_mesh_error {
+            curve.estimate_mesh_error(&mut samples).map_err(failed)?;
+        }
+        curve.finish(&self.key(parameters, rubber))?;
+        Ok(TaskResult { samples, law: rows, warning })
+    }
+
+    /// The largest local pressure in Pa that the macro contacts reach.
+    fn largest_pressure(
+        &self,
+        parameters: &Micro,
+        rubber: &Rubber,
+        law: &LocalLaw,
+    ) -> Result<f64, SolveError> {
+        let mut largest = 0.0_f64;
+        for pressed in &self.surfaces {
+            let PressedSurface { surface, most_pressure_mpa, .. } = pressed;
+            let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
+            let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
+            let speed = self.speed_mm_s / 1e3;
+            let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?;
+            let solution = contact.solve(most_pressure_mpa * 1e6)?;
+            largest = solution.pressure.into_iter().fold(largest, f64::max);
+        }
+        Ok(largest)
+    }
+
+    /// "8 and 9 waves", for messages.
+    pub fn owner_names(&self) -> String {
+        let mut counts: Vec<u32> = self.owners.iter().map(|owner| owner.waves).collect();
+        counts.dedup();
+        let counts: Vec<String> = counts.iter().map(u32::to_string).collect();
+        format!("{} waves", counts.join(" and "))
+    }
+}

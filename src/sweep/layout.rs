@@ -1,0 +1,114 @@
+//! Where the files of a sweep are.
+//!
+//! ```text
+//! OUT/
+//!   plans/0123456789abcdef/   a plan: plan.json and a list of tasks for each shard
+//!   surfaces/specimen=A/      ingest to realise, for each specimen and seed
+//!   solves/ab/….pack          the solves of a task, written by its shard
+//!   cases/specimen=A/rubber=b/    a run folder for each case, linked to its surfaces and the solves
+//!   sweep/friction.arrow      the tables of all cases
+//! ```
+
+use super::SweepError;
+use crate::artifact::SOLVES_FOLDER;
+use crate::recipe::Case;
+use std::io;
+use std::path::{Path, PathBuf};
+
+const PLANS: &str = "plans";
+/// Folder of the surfaces of all specimens and seeds.
+pub const SURFACES_FOLDER: &str = "surfaces";
+/// Folder of the cases.
+pub const CASES_FOLDER: &str = "cases";
+/// File of a plan in its folder.
+pub(super) const PLAN_FILE: &str = "plan.json";
+/// The recipe of a case, in its folder.
+pub const RECIPE_FILE: &str = "recipe.toml";
+
+/// The folder of a sweep.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    out: PathBuf,
+}
+
+impl Layout {
+    /// The sweep in the folder `out`.
+    pub fn new(out: impl Into<PathBuf>) -> Self {
+        Self { out: out.into() }
+    }
+
+    /// The sweep that the plan at `path` is part of.
+    ///
+    /// # Errors
+    /// [`SweepError::NoPlan`] for a path that is none of a plan in its sweep.
+    pub fn of_plan(path: &Path) -> Result<Self, SweepError> {
+        let mut folders = path.ancestors().skip(1);
+        let found = (folders.next(), folders.next(), folders.next());
+        let name = |folder: &Path| folder.file_name().unwrap_or_default().to_owned();
+        match found {
+            (Some(_), Some(plans), Some(out)) if name(plans) == PLANS => Ok(Self::new(out)),
+            _ => Err(SweepError::NoPlan { path: path.to_owned() }),
+        }
+    }
+
+    /// The folder itself.
+    pub fn out(&self) -> &Path {
+        &self.out
+    }
+
+    /// The solves of all cases.
+    pub fn solves(&self) -> PathBuf {
+        self.out.join(SOLVES_FOLDER)
+    }
+
+    /// What the jobs of a plan print.
+    pub fn logs(&self) -> PathBuf {
+        self.out.join("logs")
+    }
+
+    /// The plans, each in a folder that is named by its digest.
+    pub(super) fn plans(&self) -> PathBuf {
+        self.out.join(PLANS)
+    }
+
+    pub(super) fn surfaces(&self, case: &Case) -> PathBuf {
+        self.out.join(SURFACES_FOLDER).join(&case.surfaces)
+    }
+
+    /// The run folder of a case.
+    pub fn case(&self, case: &Case) -> PathBuf {
+        self.out.join(CASES_FOLDER).join(&case.folder)
+    }
+
+    /// Makes `link` lead to `target`, both below the folder of the sweep, which may be moved as a whole. What
+    /// is there already stays.
+    pub(super) fn link(&self, target: &Path, link: &Path) -> Result<(), SweepError> {
+        let failed = |source| SweepError::Io { action: "link", path: link.to_owned(), source };
+        let below = |path: &Path| path.strip_prefix(&self.out).unwrap_or(path).to_owned();
+        let (target, inner) = (below(target), below(link));
+        let up = inner.components().skip(1).map(|_| "..");
+        let relative: PathBuf = up.collect::<PathBuf>().join(target);
+        let folder = link.parent().unwrap_or(&self.out);
+        std::fs::create_dir_all(folder).map_err(failed)?;
+        match std::os::unix::fs::symlink(relative, link) {
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(failed(error)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Writes a file under a temporary name and renames it.
+pub(super) fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
+    use std::io::Write;
+    use std::os::unix::fs::PermissionsExt;
+    let failed = |source| SweepError::Io { action: "write", path: path.to_owned(), source };
+    let mut file = tempfile::Builder::new()
+        .prefix(".tmp-")
+        // The usual permissions less the umask: results are for colleagues too.
+        .permissions(std::fs::Permissions::from_mode(0o666))
+        .tempfile_in(path.parent().unwrap_or(Path::new("")))
+        .map_err(failed)?;
+    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
