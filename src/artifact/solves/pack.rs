@@ -193,7 +193,18 @@ impl Solves<'_> {
         self.save()
     }
 
+    /// Writes the pack with what another process has put there since it was read: a second copy of a shard that
+    /// is behind must not undo what the first has finished.
     fn save(&mut self) -> Result<(), ArtifactError> {
+        if let Ok(there) = Pack::read(&self.store.pack_path(&self.pack.problem))
+            && there.problem == self.pack.problem
+            && there.tool_version == TOOL_VERSION
+        {
+            self.pack.finished.extend(there.finished);
+            for (key, value) in there.solves {
+                self.pack.solves.entry(key).or_insert(value);
+            }
+        }
         self.pack.tool_version = TOOL_VERSION.to_owned();
         self.pack.digest = Digest::seal_of(&self.pack)?;
         let bytes = serde_json::to_vec(&self.pack).map_err(|error| {

@@ -122,3 +122,63 @@ fn writers_of_one_key_do_not_disturb_readers() {
         }
     });
 }
+
+/// Of one problem, with the solves under these keys and their tasks finished.
+fn finish(store: &SolveStore, problem: &Digest, tasks: &[Digest]) {
+    let mut solves = store.problem(problem).unwrap();
+    for task in tasks {
+        solves.put(task, &solve()).unwrap();
+        solves.finish(task).unwrap();
+    }
+}
+
+#[test]
+fn a_packed_store_keeps_all_solves_of_a_problem_in_one_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open_packed(folder.path()).unwrap();
+    let (problem, tasks) = (key(), [b"a", b"b"].map(|name| Digest::of_bytes(name)));
+    assert_eq!(store.pack_info(&problem).unwrap(), None);
+    finish(&store, &problem, &tasks);
+    let info = store.pack_info(&problem).unwrap().unwrap();
+    assert_eq!((info.solves, info.finished.len()), (2, 2));
+    assert_eq!(fs::read_dir(store.pack_path(&problem).parent().unwrap()).unwrap().count(), 1);
+    // A store of single files reads it too.
+    let single = SolveStore::open(folder.path()).unwrap();
+    let solves = single.problem(&problem).unwrap();
+    assert_eq!(solves.get(&tasks[1]).unwrap(), Some(solve()));
+    assert!(solves.is_finished(&tasks[0]) && !solves.is_finished(&problem));
+}
+
+/// Two copies of a shard, one of which read the file before the other wrote to it.
+#[test]
+fn who_writes_last_keeps_what_the_other_has_finished() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open_packed(folder.path()).unwrap();
+    let (problem, tasks) = (key(), [b"a", b"b", b"c"].map(|name| Digest::of_bytes(name)));
+    let mut behind = store.problem(&problem).unwrap();
+    behind.put(&tasks[2], &solve()).unwrap();
+    finish(&store, &problem, &tasks[..2]);
+    // Saves by being dropped, as when it is interrupted.
+    drop(behind);
+    let info = store.pack_info(&problem).unwrap().unwrap();
+    assert_eq!((info.solves, info.finished.len()), (3, 2));
+}
+
+#[test]
+fn a_pack_that_is_not_as_it_was_written_counts_as_absent() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open_packed(folder.path()).unwrap();
+    let (problem, task) = (key(), Digest::of_bytes(b"a"));
+    finish(&store, &problem, &[task]);
+    let path = store.pack_path(&problem);
+    let intact = fs::read(&path).unwrap();
+    for byte in (0..intact.len()).step_by(7) {
+        let mut bytes = intact.clone();
+        bytes[byte] ^= 1;
+        fs::write(&path, &bytes).unwrap();
+        assert!(store.pack_info(&problem).is_err(), "byte {byte}");
+        assert!(!store.problem(&problem).unwrap().is_finished(&task), "byte {byte}");
+    }
+    finish(&store, &problem, &[task]);
+    assert!(store.pack_info(&problem).is_ok());
+}
