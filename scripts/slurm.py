@@ -75,7 +75,7 @@ class Slurm:
         host = socket.gethostname().split(".")[0]
         nodes = "\n".join(
             f"NodeName={node} NodeAddr=127.0.0.1 NodeHostname={host} Port={free_port()} "
-            f"CPUs={self.cpus} RealMemory=4000 State=UNKNOWN"
+            f"CPUs={self.cpus} RealMemory=1000 State=UNKNOWN"
             for node in self.nodes
         )
         user = pwd.getpwuid(os.getuid()).pw_name
