@@ -40,6 +40,7 @@ pub use frame::{data_frame, write_csv, write_parquet};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
 pub use schema::{ArraysSchema, AttributeSchema, DatasetSchema, arrays_schema};
 pub use schema::{check_or_write, table_schema};
+pub(crate) use solves::write_by_rename;
 pub use solves::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, read_pack_info};
 pub use solves::{SOLVE_SCHEMA, SolveStore, Solves, StoredSolve, read_stored_solve};
 pub use store::{Pending, RunFolder, RunView, SOLVES_FOLDER};

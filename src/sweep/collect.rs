@@ -1,6 +1,6 @@
 //! From the solves of all shards to the tables of all cases.
 
-use super::layout::{Layout, RECIPE_FILE, write_by_rename};
+use super::layout::{Layout, RECIPE_FILE};
 use super::plan::{PlannedTask, ShardTasks, SweepPlan, Wanted};
 use super::prepare::{of_case, scan_digests, scans};
 use super::slurm::shell_word;
@@ -8,6 +8,7 @@ use super::table::{FRICTION_FILE, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
     Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore, TOOL_VERSION,
+    write_by_rename,
 };
 use crate::pipeline::{self, Event, Selection};
 use crate::recipe::{Case, Recipe};
@@ -315,5 +316,5 @@ fn write_recipe(case: &Case, folder: &Path) -> Result<(), SweepError> {
     if std::fs::read_to_string(&path).is_ok_and(|there| there == text) {
         return Ok(());
     }
-    write_by_rename(&path, text.as_bytes())
+    Ok(write_by_rename(&path, text.as_bytes())?)
 }

@@ -96,19 +96,3 @@ impl Layout {
         }
     }
 }
-
-/// Writes a file under a temporary name and renames it.
-pub(super) fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
-    use std::io::Write;
-    use std::os::unix::fs::PermissionsExt;
-    let failed = |source| SweepError::Io { action: "write", path: path.to_owned(), source };
-    let mut file = tempfile::Builder::new()
-        .prefix(".tmp-")
-        // The usual permissions less the umask: results are for colleagues too.
-        .permissions(std::fs::Permissions::from_mode(0o666))
-        .tempfile_in(path.parent().unwrap_or(Path::new("")))
-        .map_err(failed)?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
-}

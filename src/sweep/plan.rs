@@ -1,11 +1,11 @@
 //! The plan of a sweep: which tasks are missing and which shard solves them.
 
 use super::cost::{Cost, Costs};
-use super::layout::{Layout, PLAN_FILE, write_by_rename};
+use super::layout::{Layout, PLAN_FILE};
 use super::prepare::scan_digests;
 use super::task::{Solvers, Task};
 use super::{Prepared, SweepError, shares};
-use crate::artifact::{Digest, SolveStore, TOOL_VERSION};
+use crate::artifact::{Digest, SolveStore, TOOL_VERSION, write_by_rename};
 use crate::recipe::Recipe;
 use crate::rubber::Rubber;
 use crate::stages::Watch;
@@ -291,7 +291,7 @@ fn write_json(path: &Path, value: &impl Serialize) -> Result<(), SweepError> {
         path: path.to_owned(),
         reason: error.to_string(),
     })?;
-    write_by_rename(path, &bytes)
+    Ok(write_by_rename(path, &bytes)?)
 }
 
 fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, SweepError> {

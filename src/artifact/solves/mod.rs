@@ -165,7 +165,11 @@ fn unfit(key: &Digest, error: &serde_json::Error) -> ArtifactError {
     ArtifactError::NotRepresentable { what, reason: error.to_string() }
 }
 
-fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
+/// Writes a file under a temporary name beside its place and renames it; it is not forced to the disk.
+///
+/// # Errors
+/// [`ArtifactError::Io`].
+pub(crate) fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(folder).map_err(ArtifactError::io("create", folder))?;
     let mut file = tempfile::Builder::new()
