@@ -68,15 +68,29 @@ def lose_node(slurm, node):
     """SIGKILL to what Slurm runs there; the tasks themselves freeze, as behind a network that is cut. Returns
     their processes."""
     slurm.kill(node)
-    frozen = slurm.of_jobs(node)
-    for process in frozen:
-        status = Path(f"/proc/{process}/status").read_text()
-        parent = next(line.split()[1] for line in status.splitlines() if line.startswith("PPid:"))
-        # First the parent: a stopped process that becomes an orphan is sent SIGHUP.
-        if "slurmstepd" in Path(f"/proc/{parent}/cmdline").read_bytes().decode():
-            kill(int(parent))
-        os.kill(process, signal.SIGSTOP)
+    frozen = []
+    for process in slurm.of_jobs(node):
+        parent = parent_of(process)
+        if parent and "slurmstepd" in Path(f"/proc/{parent}/cmdline").read_bytes().decode():
+            kill(parent)
+            # Before the child stops: one that becomes an orphan while it is stopped is sent SIGHUP.
+            slurm.wait_for("end of a step", lambda: parent_of(process) != parent, 20)
+        if parent_of(process):
+            os.kill(process, signal.SIGSTOP)
+            frozen.append(process)
+    if not frozen:
+        raise RuntimeError("no task of the lost node was left to freeze")
     return frozen
+
+
+def parent_of(process):
+    """The parent of a process; none if it has ended."""
+    try:
+        status = Path(f"/proc/{process}/status").read_text()
+    except FileNotFoundError:
+        return None
+    words = dict(line.split(":", 1) for line in status.splitlines())
+    return None if words["State"].split()[0] == "Z" else int(words["PPid"])
 
 
 def same_tables(one, other):
