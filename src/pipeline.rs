@@ -131,11 +131,63 @@ pub fn run(
     interrupted: &AtomicBool,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
-    // First what can be wrong without leaving a folder behind.
-    let plan = Plan::new(recipe, None)?;
-    plan.check(selection)?;
-    let folder = RunFolder::open(out)?;
-    bring_up_to_date(&plan, &folder, selection, interrupted, observer)
+    let ready = Ready::new(recipe, out, selection)?;
+    ready.run(&RunFolder::open(out)?, interrupted, observer)
+}
+
+/// A run that nothing speaks against so far, before it leaves anything behind.
+pub struct Ready<'a> {
+    plan: Plan<'a>,
+    selection: Selection,
+}
+
+impl<'a> Ready<'a> {
+    /// Reads what the recipe refers to and looks at what is in the folder `out`, which need not be there.
+    ///
+    /// # Errors
+    /// [`PipelineError`], among them [`ArtifactError::Foreign`] for what asperity did not write where a result would go.
+    pub fn new(
+        recipe: &'a Recipe,
+        out: &Path,
+        selection: Selection,
+    ) -> Result<Self, PipelineError> {
+        let plan = Plan::new(recipe, None)?;
+        plan.check(selection)?;
+        check_places(out, plan.stages().into_iter().filter(|stage| selection.includes(*stage)))?;
+        Ok(Self { plan, selection })
+    }
+
+    /// Brings the folder up to date, as [`run`] does.
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub fn run(
+        &self,
+        folder: &RunFolder,
+        interrupted: &AtomicBool,
+        observer: &(dyn Fn(Event) + Sync),
+    ) -> Result<(), PipelineError> {
+        bring_up_to_date(&self.plan, folder, self.selection, interrupted, observer)
+    }
+}
+
+/// Fails for what asperity did not write where the results of stages that have none would go. Another result is
+/// looked at when it is known that it must give way.
+///
+/// # Errors
+/// [`ArtifactError::Foreign`].
+pub fn check_places(
+    out: &Path,
+    stages: impl IntoIterator<Item = Stage>,
+) -> Result<(), ArtifactError> {
+    let view = RunView::of(out);
+    view.check_solves()?;
+    for stage in stages {
+        if !matches!(view.stage_manifest(stage.name()), Ok(Some(_))) {
+            view.check_place(stage.name())?;
+        }
+    }
+    Ok(())
 }
 
 /// The same for a folder that other processes, also on other machines, may bring up to the same recipe at the
@@ -153,6 +205,7 @@ pub fn run_shared(
 ) -> Result<(), PipelineError> {
     let plan = Plan::new(recipe, Some(scans))?;
     plan.check(selection)?;
+    check_places(out, plan.stages().into_iter().filter(|stage| selection.includes(*stage)))?;
     let folder = RunFolder::share(out)?;
     bring_up_to_date(&plan, &folder, selection, interrupted, observer)
 }
@@ -180,6 +233,7 @@ fn bring_up_to_date(
     interrupted: &AtomicBool,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
+    let mut checked = false;
     for stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
         let identity = plan.identity(stage, folder)?;
@@ -199,6 +253,14 @@ fn bring_up_to_date(
         {
             observer(Event::Fresh(stage, &manifest));
             continue;
+        }
+        if !checked {
+            // Before anything is computed: this stage and those that may follow from it.
+            let later = plan.stages().into_iter().filter(|later| *later >= stage);
+            for later in later.filter(|later| selection.includes(*later)) {
+                folder.check_place(later.name())?;
+            }
+            checked = true;
         }
         observer(Event::Started(stage));
         let start = Instant::now();
@@ -306,14 +368,10 @@ fn compute(
     }
 }
 
-/// The store of single solves, emptied for a stage that is to be computed afresh.
+/// The store of single solves; a stage that is to be computed afresh does not find those of before.
 fn solve_store(folder: &RunFolder, forced: bool) -> Result<SolveStore, StageError> {
-    let path = folder.path().join(SOLVES_FOLDER);
-    if forced && path.exists() {
-        std::fs::remove_dir_all(&path)
-            .map_err(|source| StageError::RemoveSolves { path: path.clone(), source })?;
-    }
-    Ok(SolveStore::open(path)?)
+    let store = SolveStore::open(folder.path().join(SOLVES_FOLDER))?;
+    Ok(if forced { store.anew() } else { store })
 }
 
 /// Compares the result that is there with what is asked for.

@@ -114,8 +114,8 @@ pub enum ArtifactError {
     },
     /// The content is not what was written.
     #[error(
-        "{} was changed or damaged after it was written (digest {found:#}, written as {expected:#}): delete its folder and run the stage again",
-        .path.display()
+        "{} was changed or damaged after it was written (digest {found:#}, written as {expected:#}): {}",
+        .path.display(), mend(.path)
     )]
     Damaged {
         /// The file.
@@ -127,8 +127,8 @@ pub enum ArtifactError {
     },
     /// The file is shorter or longer than its manifest says.
     #[error(
-        "{} has {found} bytes, its manifest says {expected}: it was truncated or replaced; delete its folder and run the stage again",
-        .path.display()
+        "{} has {found} bytes, its manifest says {expected}: it was truncated or replaced; {}",
+        .path.display(), mend(.path)
     )]
     WrongSize {
         /// The file.
@@ -137,6 +137,16 @@ pub enum ArtifactError {
         expected: u64,
         /// Bytes found.
         found: u64,
+    },
+    /// A file or link that asperity did not write is where it would write.
+    #[error("{} {what}: {remedy}", .path.display())]
+    Foreign {
+        /// The file or link.
+        path: PathBuf,
+        /// What it is.
+        what: String,
+        /// What to do.
+        remedy: String,
     },
     /// Another process works in the folder.
     #[error("another run is using {}{}: wait for it or choose another --out", .path.display(), in_brackets(.holder))]
@@ -223,6 +233,17 @@ impl ArtifactError {
 
 fn in_brackets(holder: &str) -> String {
     if holder.is_empty() { String::new() } else { format!(" ({holder})") }
+}
+
+/// How a damaged file is made again: what stands beside it may be of others.
+fn mend(path: &Path) -> &'static str {
+    if path.extension().is_some_and(|extension| extension == super::PACK_EXTENSION) {
+        "run its shard again, which solves anew what is missing"
+    } else if path.ends_with(super::Manifest::FILE) {
+        "if nothing in its folder is yours, delete that folder and run the stage again"
+    } else {
+        "run the stage again, which replaces it"
+    }
 }
 
 /// What to do about the failures of the operating system that a user can mend.

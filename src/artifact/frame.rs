@@ -1,8 +1,7 @@
 //! Tables as polars data frames: pretty printing and exports, never artifacts, because polars
 //! drops the units.
 
-use std::fs::File;
-use std::io::{BufWriter, Cursor, Write};
+use std::io::Cursor;
 use std::path::Path;
 
 use polars::prelude::{
@@ -25,16 +24,16 @@ pub fn data_frame(path: &Path) -> Result<DataFrame, ArtifactError> {
         .map_err(|error| ArtifactError::unreadable(path, FORMAT, error))
 }
 
-/// Writes a data frame as CSV with a header; floats with the fewest digits that read back to the
+/// A data frame as CSV with a header; floats with the fewest digits that read back to the
 /// same bits, absent values as nothing, lists as their values with blanks between them, since CSV
 /// has none.
 ///
 /// # Errors
-/// [`ArtifactError::Io`], [`ArtifactError::Unwritable`].
-pub fn write_csv(frame: &mut DataFrame, path: &Path) -> Result<(), ArtifactError> {
-    export(path, |file| {
+/// [`ArtifactError::NotRepresentable`].
+pub fn csv_bytes(frame: &DataFrame) -> Result<Vec<u8>, ArtifactError> {
+    export("CSV", |bytes| {
         let columns = frame.columns().iter().map(without_lists).collect::<Result<_, _>>()?;
-        CsvWriter::new(file).finish(&mut DataFrame::new(frame.height(), columns)?)
+        CsvWriter::new(bytes).finish(&mut DataFrame::new(frame.height(), columns)?)
     })
 }
 
@@ -56,23 +55,23 @@ fn without_lists(column: &Column) -> Result<Column, PolarsError> {
     Ok(Column::new(column.name().clone(), cells))
 }
 
-/// Writes a data frame as Parquet.
+/// A data frame as Parquet.
 ///
 /// # Errors
-/// [`ArtifactError::Io`], [`ArtifactError::Unwritable`].
-pub fn write_parquet(frame: &mut DataFrame, path: &Path) -> Result<(), ArtifactError> {
-    export(path, |file| ParquetWriter::new(file).finish(frame).map(|_| ()))
+/// [`ArtifactError::NotRepresentable`].
+pub fn parquet_bytes(frame: &mut DataFrame) -> Result<Vec<u8>, ArtifactError> {
+    export("Parquet", |bytes| ParquetWriter::new(bytes).finish(frame).map(drop))
 }
 
+/// In memory: there is no temporary folder that could be missing or full.
 fn export(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), PolarsError>,
-) -> Result<(), ArtifactError> {
-    let file = File::create(path).map_err(ArtifactError::io("create", path))?;
-    let mut file = BufWriter::new(file);
-    write(&mut file).map_err(|error| ArtifactError::Unwritable {
-        path: path.to_path_buf(),
+    format: &str,
+    write: impl FnOnce(&mut Vec<u8>) -> Result<(), PolarsError>,
+) -> Result<Vec<u8>, ArtifactError> {
+    let mut bytes = Vec::new();
+    write(&mut bytes).map_err(|error| ArtifactError::NotRepresentable {
+        what: format!("the table as {format}"),
         reason: error.to_string(),
     })?;
-    file.flush().map_err(ArtifactError::io("write", path))
+    Ok(bytes)
 }

@@ -2,30 +2,28 @@
 //!
 //! A result is written to a temporary folder, forced to the disk, its manifest last, then renamed
 //! into place. A manifest in place therefore means that the result is complete, and a kill at any
-//! moment leaves the old result or the new one. Needs a POSIX file system: rename, and flock where one
+//! moment leaves the old result or the new one. Only what asperity wrote is replaced or removed (see `own`).
+//! Needs a POSIX file system: rename, and flock where one
 //! process at a time is to write ([`RunFolder::open`]); a shared folder ([`RunFolder::share`]) needs no lock.
 
-use std::fs::{self, File, Permissions, TryLockError};
+use std::ffi::OsStr;
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::ops::Deref;
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use serde::Deserialize;
-use tempfile::TempDir;
 
+use super::lock;
+use super::own::{self, Place};
 use super::table::{decode_rows, read_bytes};
 use super::{
-    ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, Storage, read_arrays,
-    write_arrays, write_table,
+    ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, Storage, arrays_info,
+    read_arrays, table_info, write_arrays, write_table,
 };
 
 /// Folder of the stored solves in a run folder.
 pub const SOLVES_FOLDER: &str = "solves";
-const LOCK_FILE: &str = ".lock";
-const PENDING_PREFIX: &str = ".tmp-";
-const REPLACED_PREFIX: &str = ".old-";
 
 /// The results in an output folder, for reading; others may be writing at the same time.
 #[derive(Debug)]
@@ -77,7 +75,7 @@ impl RunView {
         Ok(Some(manifest))
     }
 
-    /// Compares size and digest of every output with the manifest.
+    /// Compares size, digest and content of every output with the manifest.
     ///
     /// # Errors
     /// [`ArtifactError::NoResult`], or for the first bad file [`ArtifactError::Io`] if it is
@@ -117,8 +115,32 @@ impl RunView {
         version: u32,
     ) -> Result<Vec<ArrayDataset>, ArtifactError> {
         let output = self.finished_output(stage, file)?;
-        self.verify_output(stage, &output)?;
+        self.verify_bytes(stage, &output)?;
         read_arrays(&self.file(stage, file), schema, version)
+    }
+
+    /// Fails if a new result of the stage would have to replace what asperity did not write.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Foreign`] names it; [`ArtifactError::Io`].
+    pub fn check_place(&self, stage: &str) -> Result<(), ArtifactError> {
+        own::place(&self.path, stage).map(drop)
+    }
+
+    /// Fails for a folder of solves that is a link which asperity did not make.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Foreign`].
+    pub fn check_solves(&self) -> Result<(), ArtifactError> {
+        own::check_solves(&self.path.join(SOLVES_FOLDER))
+    }
+
+    /// Entries of the folder of a stage that its manifest does not list.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`].
+    pub fn unlisted(&self, stage: &str) -> Result<Vec<PathBuf>, ArtifactError> {
+        own::unlisted(&self.path.join(stage))
     }
 
     fn finished(&self, stage: &str) -> Result<Manifest, ArtifactError> {
@@ -140,11 +162,22 @@ impl RunView {
         })
     }
 
-    /// Compares size and digest of one output with what is expected.
+    /// Compares size, digest and content of one output with what is expected.
     ///
     /// # Errors
     /// As [`Self::verify`].
     pub fn verify_output(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
+        self.verify_bytes(stage, output)?;
+        let path = self.file(stage, &output.file);
+        let content = match path.extension().and_then(OsStr::to_str) {
+            Some("arrow") => table_info(&path)?.content_digest,
+            Some("h5") => arrays_info(&path)?.content_digest,
+            _ => output.bytes_digest,
+        };
+        ArtifactError::check_digest(&path, output.content_digest, content)
+    }
+
+    fn verify_bytes(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
         let path = self.file(stage, &output.file);
         let size = fs::metadata(&path).map_err(ArtifactError::io("read", &path))?.len();
         check_size(&path, output.size, size)?;
@@ -168,21 +201,6 @@ pub struct RunFolder {
     lock: Option<File>,
 }
 
-/// A program that another thread is just starting holds a copy of every open file until it runs,
-/// also of the lock of a folder that was closed meanwhile: a lock counts from this many tries on.
-const LOCK_TRIES: u32 = 50;
-const BETWEEN_TRIES: Duration = Duration::from_millis(20);
-
-fn lock_patiently(lock: &File) -> Result<(), TryLockError> {
-    for _ in 1..LOCK_TRIES {
-        match lock.try_lock() {
-            Err(TryLockError::WouldBlock) => std::thread::sleep(BETWEEN_TRIES),
-            other => return other,
-        }
-    }
-    lock.try_lock()
-}
-
 impl Deref for RunFolder {
     type Target = RunView;
 
@@ -195,31 +213,13 @@ impl RunFolder {
     /// Creates the folder if needed, locks it and clears away what a killed run left behind.
     ///
     /// # Errors
-    /// [`ArtifactError::Locked`] if another run has it, [`ArtifactError::Io`] if it cannot be
-    /// created or written to.
+    /// [`ArtifactError::Locked`] if another run has it, [`ArtifactError::Foreign`] if its lock is a file that asperity
+    /// did not write, [`ArtifactError::Io`] if it cannot be created or written to.
     pub fn open(path: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
         let path = path.into();
         fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
-        let lock_path = path.join(LOCK_FILE);
-        let mut lock = File::options()
-            .create(true)
-            .truncate(false)
-            .read(true)
-            .write(true)
-            .open(&lock_path)
-            .map_err(ArtifactError::io("create", &lock_path))?;
-        match lock_patiently(&lock) {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                let holder = io::read_to_string(&lock).unwrap_or_default();
-                return Err(ArtifactError::Locked { path, holder: holder.trim_end().to_owned() });
-            }
-            Err(TryLockError::Error(error)) => {
-                return Err(ArtifactError::io("lock", &lock_path)(error));
-            }
-        }
-        sign(&mut lock).map_err(ArtifactError::io("write", &lock_path))?;
-        clear_leftovers(&path)?;
+        let lock = lock::take(&path)?;
+        own::clear_leftovers(&path)?;
         Ok(Self { view: RunView { path }, lock: Some(lock) })
     }
 
@@ -243,64 +243,9 @@ impl RunFolder {
     /// # Errors
     /// [`ArtifactError::Io`] if the temporary folder cannot be created.
     pub fn begin(&self, stage: &str) -> Result<Pending<'_>, ArtifactError> {
-        let folder = tempfile::Builder::new()
-            .prefix(&format!("{PENDING_PREFIX}{stage}-"))
-            // The usual permissions less the umask: results are for colleagues too.
-            .permissions(Permissions::from_mode(0o777))
-            .tempdir_in(self.path())
-            .map_err(ArtifactError::io("create a folder in", self.path()))?;
+        let folder = own::new_folder(self.path(), stage)?;
         Ok(Pending { run: self, stage: stage.to_owned(), folder, outputs: Vec::new() })
     }
-}
-
-/// Says in the lock who has it.
-fn sign(lock: &mut File) -> io::Result<()> {
-    lock.set_len(0)?;
-    writeln!(lock, "process {}", std::process::id())
-}
-
-/// Removes temporary folders, and temporary files of stored solves. A replaced result goes as well, unless the kill came between moving
-/// it aside and moving the new one into place; then it is put back.
-fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
-    for entry in fs::read_dir(run).map_err(ArtifactError::io("read", run))? {
-        let path = entry.map_err(ArtifactError::io("read", run))?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        match name.strip_prefix(REPLACED_PREFIX) {
-            Some(stage) if !run.join(stage).exists() => {
-                fs::rename(&path, run.join(stage)).map_err(ArtifactError::io("rename", &path))?;
-            }
-            None if !name.starts_with(PENDING_PREFIX) => {}
-            _ => remove(&path)?,
-        }
-    }
-    let solves = run.join(SOLVES_FOLDER);
-    // A linked store is that of a sweep, where others write.
-    if solves.is_symlink() { Ok(()) } else { clear_solves(&solves) }
-}
-
-/// Only with the lock: another process may be writing otherwise.
-fn clear_solves(store: &Path) -> Result<(), ArtifactError> {
-    let entries = |path: &Path| match fs::read_dir(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
-        read => read
-            .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect())
-            .map_err(ArtifactError::io("read", path)),
-    };
-    for folder in entries(store)?.into_iter().filter(|path| path.is_dir()) {
-        for path in entries(&folder)? {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if name.starts_with(PENDING_PREFIX) {
-                remove(&path)?;
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Removes a folder with all in it, or a file that stands where a folder should.
-fn remove(path: &Path) -> Result<(), ArtifactError> {
-    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
-    removed.map_err(ArtifactError::io("remove", path))
 }
 
 /// A result that is being written.
@@ -308,14 +253,18 @@ fn remove(path: &Path) -> Result<(), ArtifactError> {
 pub struct Pending<'a> {
     run: &'a RunFolder,
     stage: String,
-    folder: TempDir,
+    folder: PathBuf,
     outputs: Vec<Output>,
 }
 
 impl Pending<'_> {
     /// Path at which a file of the result is to be written; [`Pending::record`] makes it an output.
-    pub fn path(&self, file: &str) -> PathBuf {
-        self.folder.path().join(file)
+    ///
+    /// # Errors
+    /// [`ArtifactError::Io`] if it cannot be noted that the file is asperity's.
+    pub fn path(&self, file: &str) -> Result<PathBuf, ArtifactError> {
+        own::note_in_journal(&self.folder, file)?;
+        Ok(self.folder.join(file))
     }
 
     /// The outputs so far, for the manifest.
@@ -333,7 +282,7 @@ impl Pending<'_> {
         rows: &[R],
         metadata: &Metadata,
     ) -> Result<(), ArtifactError> {
-        let content = write_table(&self.path(file), rows, metadata)?;
+        let content = write_table(&self.path(file)?, rows, metadata)?;
         self.record(file, R::SCHEMA, R::VERSION, Some(content))
     }
 
@@ -351,7 +300,7 @@ impl Pending<'_> {
         datasets: &[ArrayDataset],
     ) -> Result<(), ArtifactError> {
         let content =
-            write_arrays(&self.path(file), schema, version, description, storage, datasets)?;
+            write_arrays(&self.path(file)?, schema, version, description, storage, datasets)?;
         self.record(file, schema, version, Some(content))
     }
 
@@ -361,7 +310,7 @@ impl Pending<'_> {
     /// # Errors
     /// [`ArtifactError::Io`].
     pub fn write_document(&mut self, file: &str, text: &str) -> Result<(), ArtifactError> {
-        let path = self.path(file);
+        let path = self.path(file)?;
         fs::write(&path, text).map_err(ArtifactError::io("write", &path))?;
         self.record(file, "asperity.document", 1, None)
     }
@@ -378,7 +327,7 @@ impl Pending<'_> {
         schema_version: u32,
         content_digest: Option<Digest>,
     ) -> Result<(), ArtifactError> {
-        let path = self.path(file);
+        let path = self.folder.join(file);
         let bytes_digest = Digest::of_file(&path)?;
         let size = fs::metadata(&path).map_err(ArtifactError::io("read", &path))?.len();
         self.outputs.push(Output {
@@ -398,84 +347,98 @@ impl Pending<'_> {
     /// and removed once the new one is in place.
     ///
     /// # Errors
-    /// [`ArtifactError::Io`]; the old result then stays, or comes back with the next
-    /// [`RunFolder::open`].
+    /// [`ArtifactError::Foreign`] if what is there is not asperity's, [`ArtifactError::Io`]; the old result then stays,
+    /// or comes back with the next [`RunFolder::open`].
     pub fn commit(self, manifest: &Manifest) -> Result<(), ArtifactError> {
-        let folder = self.folder.path();
+        let folder = &self.folder;
         for entry in fs::read_dir(folder).map_err(ArtifactError::io("read", folder))? {
             synchronise(&entry.map_err(ArtifactError::io("read", folder))?.path())?;
         }
-        write_manifest(&folder.join(Manifest::FILE), manifest)?;
+        write_manifest(&self.path(Manifest::FILE)?, manifest)?;
+        own::end_journal(folder)?;
         synchronise(folder)?;
 
         let run = self.run.path();
-        let place = run.join(&self.stage);
-        let put = if self.run.lock.is_some() {
-            self.replace(&place)?;
-            true
+        let aside = if self.run.lock.is_some() {
+            self.replace()?.into_iter().collect()
         } else {
-            self.put_beside_others(&place, manifest)?
+            self.put_beside_others(manifest)?
         };
-        if put {
-            // The folder has moved; nothing is left for its guard to remove.
-            let _ = self.folder.keep();
-        }
         synchronise(run)?;
-        remove_if_there(&run.join(format!("{REPLACED_PREFIX}{}", self.stage)))
+        aside.iter().try_for_each(|aside| own::clear(aside))
     }
 
-    /// Moves the old result aside, the new one into place. Nobody else writes.
-    fn replace(&self, place: &Path) -> Result<(), ArtifactError> {
-        let aside = self.run.path().join(format!("{REPLACED_PREFIX}{}", self.stage));
-        let replaces = place.exists();
-        if replaces {
-            fs::rename(place, &aside).map_err(ArtifactError::io("rename", place))?;
-        }
-        if let Err(error) = fs::rename(self.folder.path(), place) {
-            if replaces {
-                fs::rename(&aside, place).map_err(ArtifactError::io("restore", place))?;
+    /// Moves the old result aside, the new one into place; returns where the old one is. Nobody else writes.
+    fn replace(&self) -> Result<Option<PathBuf>, ArtifactError> {
+        let place = self.run.path().join(&self.stage);
+        let aside = self.make_room()?;
+        if let Err(error) = fs::rename(&self.folder, &place) {
+            if let Some(aside) = &aside {
+                fs::rename(aside, &place).map_err(ArtifactError::io("restore", &place))?;
             }
-            return Err(ArtifactError::io("rename a new result to", place)(error));
+            return Err(ArtifactError::io("rename a new result to", &place)(error));
         }
-        Ok(())
+        Ok(aside)
     }
 
-    /// Moves the new result into place unless another process has put the same there; returns whether it did.
-    /// What else is there is moved aside and removed.
-    fn put_beside_others(&self, place: &Path, manifest: &Manifest) -> Result<bool, ArtifactError> {
+    /// Moves what asperity wrote away from the place of the result; returns where it is.
+    fn make_room(&self) -> Result<Option<PathBuf>, ArtifactError> {
+        let run = self.run.path();
+        let place = run.join(&self.stage);
+        match own::place(run, &self.stage)? {
+            Place::Free => Ok(None),
+            Place::Link => match fs::remove_file(&place) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                    Err(ArtifactError::io("remove", &place)(error))
+                }
+                _ => Ok(None),
+            },
+            Place::Result => {
+                let aside = own::old_folder(run, &self.stage)?;
+                match fs::rename(&place, &aside) {
+                    // Another process was quicker to move it.
+                    Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                    renamed => renamed.map_err(ArtifactError::io("rename", &place))?,
+                }
+                Ok(Some(aside))
+            }
+        }
+    }
+
+    /// Moves the new result into place unless another process has put the same there. What else is there is moved
+    /// aside; returns the folders that are to be removed.
+    fn put_beside_others(&self, manifest: &Manifest) -> Result<Vec<PathBuf>, ArtifactError> {
+        let place = self.run.path().join(&self.stage);
+        let mut aside = Vec::new();
         loop {
-            let Err(error) = fs::rename(self.folder.path(), place) else { return Ok(true) };
+            let Err(error) = fs::rename(&self.folder, &place) else { return Ok(aside) };
             let occupied = [
                 io::ErrorKind::AlreadyExists,
                 io::ErrorKind::DirectoryNotEmpty,
                 io::ErrorKind::NotADirectory,
             ];
             if !occupied.contains(&error.kind()) {
-                return Err(ArtifactError::io("rename a new result to", place)(error));
+                return Err(ArtifactError::io("rename a new result to", &place)(error));
             }
             let there = self.run.stage_manifest(&self.stage).ok().flatten();
             if there.is_some_and(|there| there.key == manifest.key)
                 && self.run.verify(&self.stage).is_ok()
             {
-                return Ok(false);
+                aside.push(self.folder.clone());
+                return Ok(aside);
             }
-            let aside = tempfile::Builder::new()
-                .prefix(PENDING_PREFIX)
-                .tempdir_in(self.run.path())
-                .map_err(ArtifactError::io("create a folder in", self.run.path()))?;
-            match fs::rename(place, aside.path().join("old")) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                    return Err(ArtifactError::io("rename", place)(error));
-                }
-                // Another process was quicker to move it.
-                _ => {}
-            }
+            aside.extend(self.make_room()?);
         }
     }
 }
 
-fn remove_if_there(path: &Path) -> Result<(), ArtifactError> {
-    if path.exists() || path.is_symlink() { remove(path) } else { Ok(()) }
+impl Drop for Pending<'_> {
+    /// Removes what was begun. A failure leaves it to the next run, which clears it.
+    fn drop(&mut self) {
+        if self.folder.is_dir() {
+            let _ = own::clear(&self.folder);
+        }
+    }
 }
 
 fn write_manifest(path: &Path, manifest: &Manifest) -> Result<(), ArtifactError> {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::CliError;
-use super::output::{json, note, print, write_file};
+use super::output::{json, note, print, refuse_existing, write_file};
 use crate::bench::figure::figure;
 use crate::bench::growth::{self, GrowthError, Job};
 use crate::bench::measure::Effort;
@@ -88,12 +88,17 @@ impl Bench {
 
     /// Whether the results have a place is known before they are computed.
     fn refuse_early(&self) -> Result<(), CliError> {
-        match &self.to {
-            Some(path) if path.exists() && !self.force && renewed(path, "").is_none() => {
-                Err(super::output::already_exists(path))
-            }
-            _ => Ok(()),
+        let Some(path) = &self.to else { return Ok(()) };
+        let document = fs::read_to_string(path).ok().filter(|_| renewed(path, "").is_some());
+        refuse_existing(Some(path), self.force || document.is_some())?;
+        if self.growth || self.format != Format::Markdown {
+            return Ok(());
         }
+        // A plot that the document shows is a part of it.
+        let plot = path.with_extension("svg");
+        let name = plot.file_name().unwrap_or_default().to_string_lossy();
+        let shown = document.is_some_and(|document| document.contains(&*name));
+        refuse_existing(Some(&plot), self.force || shown)
     }
 
     fn precision(&self, quiet: bool) -> Result<(), CliError> {

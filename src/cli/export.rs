@@ -10,9 +10,9 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::last_run::LastRun;
-use super::output::{note, print, write_file};
+use super::output::{note, print, refuse_existing, write_file};
 use super::run_folder;
-use crate::artifact::{RunView, data_frame as data_frame_of, write_csv, write_parquet};
+use crate::artifact::{ArtifactError, RunView, csv_bytes, data_frame as data_frame_of, parquet_bytes};
 use crate::report::{
     About, FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
     markdown, workbook,
@@ -145,7 +145,7 @@ impl Export {
                     return Err(CliError::input("Parquet is binary: give a file with --to"));
                 };
                 let mut frame = data_frame(&rows).map_err(CliError::failure)?;
-                self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
+                self.bytes(path, parquet_bytes(&mut frame))
             }
         }
     }
@@ -200,13 +200,9 @@ impl Export {
         let file = format!("{name}.arrow");
         let mut frame = data_frame_of(&view.file(stage, &file)).map_err(CliError::input)?;
         match (self.format, &self.to) {
-            (Format::Csv, None) => print(&csv_text(&mut frame)?),
-            (Format::Csv, Some(path)) => {
-                self.by_rename(path, |temporary| write_csv(&mut frame, temporary))
-            }
-            (Format::Parquet, Some(path)) => {
-                self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
-            }
+            (Format::Csv, None) => print(&csv_text(&frame)?),
+            (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
+            (Format::Parquet, Some(path)) => self.bytes(path, parquet_bytes(&mut frame)),
             (Format::Parquet, None) => {
                 Err(CliError::input("Parquet is binary: give a file with --to"))
             }
@@ -234,40 +230,35 @@ impl Export {
 
     fn csv(&self, tables: &[FrictionTable]) -> Result<(), CliError> {
         match (&self.to, tables) {
-            (None, [table]) => print(&csv_text(&mut published(table)?)?),
+            (None, [table]) => print(&csv_text(&published(table)?)?),
             (None, _) => Err(CliError::input(format!(
                 "there are {} tables: give a folder with --to, or choose one with --model, \
                  --waves and --speed",
                 tables.len()
             ))),
             (Some(path), [table]) if path.extension().is_some() => {
-                let mut frame = published(table)?;
-                self.by_rename(path, |temporary| write_csv(&mut frame, temporary))
+                self.bytes(path, csv_bytes(&published(table)?))
             }
             (Some(folder), tables) => {
                 std::fs::create_dir_all(folder).map_err(|error| {
                     CliError::failure(format!("cannot create {}: {error}", folder.display()))
                 })?;
+                let path = |table: &FrictionTable| {
+                    folder.join(table.file_stem()).with_extension("csv")
+                };
                 for table in tables {
-                    let mut frame = published(table)?;
-                    let path = folder.join(table.file_stem()).with_extension("csv");
-                    self.by_rename(&path, |temporary| write_csv(&mut frame, temporary))?;
+                    refuse_existing(Some(&path(table)), self.force)?;
+                }
+                for table in tables {
+                    self.bytes(&path(table), csv_bytes(&published(table)?))?;
                 }
                 Ok(())
             }
         }
     }
 
-    /// Writes beside the place and moves there, so that the file is complete or not there.
-    fn by_rename(
-        &self,
-        path: &Path,
-        write: impl FnOnce(&Path) -> Result<(), crate::artifact::ArtifactError>,
-    ) -> Result<(), CliError> {
-        let folder = tempfile::tempdir().map_err(CliError::failure)?;
-        let temporary = folder.path().join("export");
-        write(&temporary).map_err(CliError::failure)?;
-        let bytes = std::fs::read(&temporary).map_err(CliError::failure)?;
+    fn bytes(&self, path: &Path, bytes: Result<Vec<u8>, ArtifactError>) -> Result<(), CliError> {
+        let bytes = bytes.map_err(CliError::failure)?;
         write_file(path, self.force, |out| out.write_all(&bytes))
     }
 }
@@ -286,11 +277,8 @@ fn all_tables(view: &RunView) -> Vec<String> {
     tables
 }
 
-fn csv_text(frame: &mut polars::prelude::DataFrame) -> Result<String, CliError> {
-    let folder = tempfile::tempdir().map_err(CliError::failure)?;
-    let path = folder.path().join("table.csv");
-    write_csv(frame, &path).map_err(CliError::failure)?;
-    std::fs::read_to_string(path).map_err(CliError::failure)
+fn csv_text(frame: &polars::prelude::DataFrame) -> Result<String, CliError> {
+    String::from_utf8(csv_bytes(frame).map_err(CliError::failure)?).map_err(CliError::failure)
 }
 
 /// The table with the columns of the published ones and the interval.

@@ -2,25 +2,32 @@
 //! its results still are those of the recipe.
 
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::CliError;
 use super::output::{json, write_file};
 use super::recipe_options::{with_scans, with_tolerance};
-use crate::artifact::{Digest, RunView, TOOL_VERSION};
+use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION};
 use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::report::html::Origin;
 use crate::stages::Stage;
 use crate::sweep::slurm::shell_word;
 
+const SCHEMA: &str = "asperity.last_run";
+
 /// What `asperity run` was given, as absolute paths.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct LastRun {
+    /// Always [`SCHEMA`]; empty in notes of earlier versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    schema: String,
     recipe: PathBuf,
+    /// The recipe as seen from the run folder, which stays when both are moved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    recipe_from_here: Option<PathBuf>,
     /// Those of the command line.
     scans: Vec<PathBuf>,
     /// That of the command line.
@@ -40,7 +47,7 @@ pub(super) struct LastRun {
 
 impl LastRun {
     /// Beside the folders of the stages; no result.
-    pub(super) const FILE: &str = "last_run.json";
+    pub(super) const FILE: &str = NOTE_FILE;
 
     /// # Errors
     /// [`CliError::Failure`] if the working folder is not known.
@@ -53,7 +60,9 @@ impl LastRun {
         let absolute = |path: &Path| std::path::absolute(path).map_err(CliError::failure);
         let scans = scans.iter().map(|path| absolute(path)).collect::<Result<_, _>>()?;
         Ok(Self {
+            schema: SCHEMA.to_owned(),
             recipe: absolute(recipe)?,
+            recipe_from_here: None,
             scans,
             tolerance,
             text: Some(text),
@@ -63,16 +72,61 @@ impl LastRun {
         })
     }
 
+    /// Fails for a run folder that is that of another recipe, unless it is to be taken over, and for a file in
+    /// place of the note that asperity did not write.
+    ///
     /// # Errors
-    /// [`CliError::Failure`] if it cannot be written.
-    pub(super) fn write(mut self, out: &Path) -> Result<(), CliError> {
+    /// [`CliError::Input`].
+    pub(super) fn check(&self, out: &Path, take_over: bool) -> Result<(), CliError> {
+        let path = out.join(Self::FILE);
+        if !path.exists() && !path.is_symlink() {
+            return Ok(());
+        }
+        let bytes = std::fs::read(&path).unwrap_or_default();
+        let there = Self::whole(&bytes).ok();
+        if path.is_symlink() || there.is_none() && !bytes.starts_with(NOTE_HEAD.as_bytes()) {
+            return Err(CliError::input(format!(
+                "{} is not as asperity writes it, which would have to replace it: move it away, or choose another --out",
+                path.display()
+            )));
+        }
+        match there {
+            Some(there) if !take_over && !there.is_of(&self.recipe, out) => {
+                Err(CliError::input(format!(
+                    "{} is the run folder of another recipe, {}: choose another --out, or give --take-over to make it that of {}",
+                    out.display(),
+                    there.recipe_for(out).display(),
+                    self.recipe.display()
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the note in the folder `out` is of the recipe at that path.
+    fn is_of(&self, recipe: &Path, out: &Path) -> bool {
+        same_file(&self.recipe_for(out), recipe)
+    }
+
+    /// Where the recipe is now: as seen from the run folder if it is there, for both may have been moved together,
+    /// else where it was.
+    fn recipe_for(&self, out: &Path) -> PathBuf {
+        let from_here = self.recipe_from_here.as_ref();
+        let from_here = from_here.and_then(|path| out.join(path).canonicalize().ok());
+        from_here.filter(|path| path.is_file()).unwrap_or_else(|| self.recipe.clone())
+    }
+
+    /// # Errors
+    /// As [`Self::check`]; [`CliError::Failure`] if it cannot be written.
+    pub(super) fn write(&self, out: &Path, take_over: bool) -> Result<(), CliError> {
+        self.check(out, take_over)?;
+        let mut note = self.clone();
+        note.recipe_from_here = relative(out, &self.recipe);
         // Known once the pool of threads is.
-        self.threads = Some(rayon::current_num_threads());
-        self.digest = Digest::seal_of(&self).map_err(CliError::failure)?;
-        let text = json(&self)?;
-        write_file(&out.join(Self::FILE), true, |out: &mut dyn Write| {
-            out.write_all(text.as_bytes())
-        })
+        note.threads = Some(rayon::current_num_threads());
+        note.digest = Digest::seal_of(&note).map_err(CliError::failure)?;
+        let text = json(&note)?;
+        write_file(&out.join(Self::FILE), true, |out| out.write_all(text.as_bytes()))
     }
 
     /// None where no run left one that is whole.
@@ -118,7 +172,7 @@ impl LastRun {
 
     /// The command that brings the folder up to date, for a shell.
     fn command(&self, out: &Path) -> String {
-        let mut words = vec!["asperity".to_owned(), "run".into(), quoted(&self.recipe)];
+        let mut words = vec!["asperity".to_owned(), "run".into(), quoted(&self.recipe_for(out))];
         if !self.scans.is_empty() {
             words.push("--scans".into());
             words.extend(self.scans.iter().map(|path| quoted(path)));
@@ -132,10 +186,11 @@ impl LastRun {
 
     /// Why the result of a stage in the folder `out` is not what the recipe asks for; none if it is.
     pub(super) fn doubt(&self, out: &Path, stage: &str) -> Option<String> {
-        let recipe = self.recipe.display();
-        let states = Recipe::read(&self.recipe)
+        let path = self.recipe_for(out);
+        let recipe = path.display();
+        let states = Recipe::read(&path)
             .map_err(CliError::from)
-            .and_then(|read| with_scans(read, &self.recipe, &self.scans))
+            .and_then(|read| with_scans(read, &path, &self.scans))
             .and_then(|read| with_tolerance(read, self.tolerance))
             .and_then(|read| Ok(pipeline::status(&read, out)?));
         let states = match states {
@@ -160,6 +215,22 @@ impl LastRun {
     }
 }
 
+/// Whether two paths lead to one file; by name where there is none.
+fn same_file(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// The path of a file as seen from a folder; none if one of them is not there.
+fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
+    let (folder, file) = (folder.canonicalize().ok()?, file.canonicalize().ok()?);
+    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    Some(up.chain(file.components().skip(common)).collect())
+}
+
 /// A path as one word of a shell.
 fn quoted(path: &Path) -> String {
     shell_word(&path.display().to_string())
@@ -174,4 +245,69 @@ fn first_cause(states: &[(Stage, State)], reasons: &[String]) -> String {
         _ => None,
     });
     inherited.unwrap_or_else(|| reasons.join("; "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn note(recipe: &Path) -> LastRun {
+        LastRun::new(recipe, "title = 'one'".into(), &[], None).unwrap()
+    }
+
+    /// Files in the folders of two projects, of one name.
+    fn projects() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for project in ["a", "b"] {
+            std::fs::create_dir_all(folder.path().join(project).join("out")).unwrap();
+            std::fs::write(folder.path().join(project).join("recipe.toml"), "").unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn a_run_folder_is_that_of_one_recipe() {
+        let folder = projects();
+        let (a, b) = (folder.path().join("a/recipe.toml"), folder.path().join("b/recipe.toml"));
+        let out = folder.path().join("a/out");
+        note(&a).write(&out, false).unwrap();
+        let text = std::fs::read_to_string(out.join(LastRun::FILE)).unwrap();
+        assert!(text.starts_with(NOTE_HEAD), "{text}");
+        note(&a).check(&out, false).unwrap();
+        let refused = note(&b).check(&out, false).unwrap_err().to_string();
+        assert!(refused.contains("a/recipe.toml") && refused.contains("--take-over"), "{refused}");
+        note(&b).check(&out, true).unwrap();
+    }
+
+    #[test]
+    fn a_project_may_be_moved_or_copied_as_a_whole_and_a_run_folder_alone() {
+        let folder = projects();
+        let at = |name: &str| folder.path().join(name);
+        note(&at("a/recipe.toml")).write(&at("a/out"), false).unwrap();
+        // A copy of the project is a project of its own.
+        std::fs::copy(at("a/out/last_run.json"), at("b/out/last_run.json")).unwrap();
+        note(&at("b/recipe.toml")).check(&at("b/out"), false).unwrap();
+        assert!(note(&at("a/recipe.toml")).check(&at("b/out"), false).is_err());
+        std::fs::rename(at("a"), at("moved")).unwrap();
+        note(&at("moved/recipe.toml")).check(&at("moved/out"), false).unwrap();
+        // The run folder alone is known by where its recipe was.
+        note(&at("moved/recipe.toml")).write(&at("moved/out"), false).unwrap();
+        std::fs::create_dir_all(at("far/away")).unwrap();
+        std::fs::rename(at("moved/out"), at("far/away/out")).unwrap();
+        note(&at("moved/recipe.toml")).check(&at("far/away/out"), false).unwrap();
+        assert!(note(&at("b/recipe.toml")).check(&at("far/away/out"), true).is_ok());
+        assert!(note(&at("b/recipe.toml")).check(&at("far/away/out"), false).is_err());
+    }
+
+    #[test]
+    fn a_file_of_the_same_name_stays() {
+        let folder = projects();
+        let (recipe, out) = (folder.path().join("a/recipe.toml"), folder.path().join("a/out"));
+        for text in ["", "{\"runs\": 7}", "notes"] {
+            std::fs::write(out.join(LastRun::FILE), text).unwrap();
+            let refused = note(&recipe).write(&out, true).unwrap_err();
+            assert_eq!(refused.exit_code(), 2);
+            assert_eq!(std::fs::read_to_string(out.join(LastRun::FILE)).unwrap(), text);
+        }
+    }
 }

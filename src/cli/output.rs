@@ -1,12 +1,12 @@
 //! Standard output and files.
 
 use std::fmt::Display;
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 use super::CliError;
+use crate::artifact::temporary_beside;
 
 /// Prints a result to standard output. A reader that has seen enough, such as `head`, is no error.
 ///
@@ -63,8 +63,8 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// Writes a file under a temporary name and renames it, so that it is there completely or not at
-/// all. What is no plain file (`/dev/stdout`, a link) is written as it stands.
+/// Writes a file under a temporary name, forces it to the disk and renames it, so that it is there completely or
+/// not at all. What a link leads to is written in the same way; a device or a pipe (`/dev/stdout`) as it stands.
 ///
 /// # Errors
 /// [`CliError::Failure`] that names the file; a file that exists and must not be overwritten is
@@ -78,12 +78,32 @@ pub(super) fn write_file(
         io::ErrorKind::AlreadyExists => already_exists(path),
         _ => CliError::failure(format!("cannot write {}: {error}", path.display())),
     };
-    match fs::symlink_metadata(path) {
-        Ok(_) if !overwrite => Err(already_exists(path)),
-        Ok(metadata) if !metadata.is_file() => {
+    let there = fs::metadata(path);
+    // A device or a pipe has nothing in it that could be lost; a link that leads nowhere may be to what is elsewhere.
+    let stream = there.as_ref().is_ok_and(|there| !there.is_file() && !there.is_dir());
+    if !overwrite && !stream && fs::symlink_metadata(path).is_ok() {
+        return Err(already_exists(path));
+    }
+    match there {
+        Ok(there) if !there.is_file() => {
             File::create(path).and_then(|file| buffered(file, write)).map_err(failed)
         }
-        _ => write_by_rename(path, overwrite, write).map_err(failed),
+        Ok(_) => {
+            let target = fs::canonicalize(path).map_err(failed)?;
+            write_by_rename(&target, overwrite, write).map_err(failed)
+        }
+        Err(_) => write_by_rename(path, overwrite, write).map_err(failed),
+    }
+}
+
+/// Fails for a file that is there, unless it may be overwritten: before long work, of which it is to be the end.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub(super) fn refuse_existing(path: Option<&Path>, overwrite: bool) -> Result<(), CliError> {
+    match path {
+        Some(path) if !overwrite && (path.is_file() || path.is_symlink() && !path.exists()) => Err(already_exists(path)),
+        _ => Ok(()),
     }
 }
 
@@ -98,20 +118,14 @@ fn write_by_rename(
     overwrite: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let mut file = tempfile::Builder::new()
-        .prefix(".tmp-")
-        // The usual permissions less the umask: results are for colleagues too.
-        .permissions(Permissions::from_mode(0o666))
-        .tempfile_in(folder)
-        // The full message would speak of the temporary name.
-        .map_err(|error| io::Error::from(error.kind()))?;
+    // The full message would speak of the temporary name.
+    let mut file = temporary_beside(path).map_err(|error| io::Error::from(error.kind()))?;
     buffered(file.as_file_mut(), write)?;
+    file.as_file().sync_all()?;
     let persisted = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
-    persisted.map(drop).map_err(|error| error.error)
+    persisted.map_err(|error| error.error)?;
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    File::open(folder)?.sync_all()
 }
 
 fn buffered(
@@ -165,5 +179,25 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         write_file(&path, true, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_link_is_not_written_through_unasked_and_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        // Also where it leads nowhere yet.
+        assert!(write_file(&link, false, |out| out.write_all(b"new")).is_err());
+        fs::write(&target, "old").unwrap();
+        assert!(write_file(&link, false, |out| out.write_all(b"new")).is_err());
+        let half = write_file(&link, true, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::other("no more"))
+        });
+        assert!(half.is_err());
+        assert_eq!(fs::read(&target).unwrap(), b"old");
+        write_file(&link, true, |out| out.write_all(b"new")).unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read(&target).unwrap(), b"new");
     }
 }

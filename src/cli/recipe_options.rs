@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::last_run::LastRun;
 use super::{CliError, values};
+use crate::artifact::ArtifactError;
 use crate::pipeline::PipelineError;
 use crate::recipe::{Recipe, RecipeError};
 use crate::stages::StageError;
@@ -22,9 +23,21 @@ pub(super) struct RecipeOptions {
     /// Relative accuracy of the averaged friction, in place of what the recipe asks for.
     #[arg(long, value_name = "RELATIVE", value_parser = values::tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Run folder for all results; runs/NAME for the recipe NAME.toml if not given.
+    /// Run folder for all results. If not given, runs/NAME beside the recipe NAME.toml; for recipes in a folder
+    /// `pipelines`, runs/NAME beside that folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+}
+
+/// A folder for recipes alone, whose runs lie beside it.
+const RECIPE_FOLDER: &str = "pipelines";
+
+/// What the commands that write into a run folder have besides.
+#[derive(Debug, Args)]
+pub(super) struct TakeOver {
+    /// Use the run folder although its last run was of another recipe file.
+    #[arg(long)]
+    pub(super) take_over: bool,
 }
 
 impl RecipeOptions {
@@ -51,9 +64,22 @@ impl RecipeOptions {
 
     /// The run folder.
     pub(super) fn out(&self) -> PathBuf {
-        let stem = || self.recipe.file_stem().unwrap_or("run".as_ref());
-        self.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(stem()))
+        self.out.clone().unwrap_or_else(|| default_out(&self.recipe))
     }
+}
+
+/// The run folder of a recipe: it follows from where the recipe is, not from where the command is given.
+fn default_out(recipe: &Path) -> PathBuf {
+    let folder = recipe.parent().unwrap_or(Path::new(""));
+    let name = |folder: &Path| folder.file_name() == Some(RECIPE_FOLDER.as_ref());
+    let beside = if name(folder) {
+        folder.parent().unwrap_or(Path::new("")).to_owned()
+    } else if std::path::absolute(folder.join(".")).is_ok_and(|folder| name(&folder)) {
+        folder.join("..")
+    } else {
+        folder.to_owned()
+    };
+    beside.join("runs").join(recipe.file_stem().unwrap_or("run".as_ref()))
 }
 
 /// The recipe at `path` with other scans, if there are some.
@@ -113,7 +139,7 @@ pub(super) fn is_input(error: &PipelineError) -> bool {
         | PipelineError::Recipe(_)
         | PipelineError::NoSuchStage { .. }
         | PipelineError::ForcedOutside { .. } => true,
-        PipelineError::Artifact(_) => false,
+        PipelineError::Artifact(error) => matches!(error, ArtifactError::Foreign { .. }),
         PipelineError::Stage { source, .. } => matches!(
             **source,
             StageError::Scan(_)
@@ -130,6 +156,7 @@ pub(super) fn is_input(error: &PipelineError) -> bool {
                 | StageError::Rubber(_)
                 | StageError::RubberAtFiniteDeformation { .. }
                 | StageError::NoRelaxation { .. }
+                | StageError::Artifact(ArtifactError::Foreign { .. })
         ),
     }
 }
@@ -140,5 +167,25 @@ impl From<PipelineError> for CliError {
             return Self::Interrupted;
         }
         if is_input(&error) { Self::input(error) } else { Self::failure(error) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_run_folder_follows_the_recipe() {
+        let cases = [
+            ("recipe.toml", "runs/recipe"),
+            ("a/recipe.toml", "a/runs/recipe"),
+            ("b/recipe.toml", "b/runs/recipe"),
+            ("/data/a/recipe.toml", "/data/a/runs/recipe"),
+            ("pipelines/asphalt.toml", "runs/asphalt"),
+            ("road/pipelines/asphalt.toml", "road/runs/asphalt"),
+        ];
+        for (recipe, out) in cases {
+            assert_eq!(default_out(Path::new(recipe)), Path::new(out), "{recipe}");
+        }
     }
 }

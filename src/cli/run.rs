@@ -9,11 +9,12 @@ use std::sync::Mutex;
 use super::interrupt::Interrupt;
 use super::output::{json, note, print};
 use super::progress::{Bar, Progress};
-use super::recipe_options::RecipeOptions;
-use super::sweep::{note_recipes, tell};
+use super::recipe_options::{RecipeOptions, TakeOver};
+use super::sweep::{claim_sweep, note_recipes, tell};
 use super::{CliError, values};
-use crate::artifact::{Manifest, RunView};
-use crate::pipeline::{self, Event, Selection};
+use super::last_run::LastRun;
+use crate::artifact::{Manifest, RunFolder, RunView};
+use crate::pipeline::{Event, PipelineError, Ready, Selection};
 use crate::recipe::Recipe;
 use crate::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
 use crate::stages::{Stage, Watch};
@@ -48,6 +49,8 @@ pub(super) struct Run {
     /// Compute this stage even if it is up to date.
     #[arg(long, value_name = "STAGE")]
     force: Option<Stage>,
+    #[command(flatten)]
+    folder: TakeOver,
     /// Number of threads; all cores if not given. The numbers do not depend on it.
     #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
     threads: Option<usize>,
@@ -86,7 +89,7 @@ impl Run {
         let out = self.recipe.out();
         let selection = Selection { only: self.only, from: self.from, force: self.force };
         if recipe.sweep.is_some() {
-            return self.run_cases(&recipe, &out, quiet);
+            return self.run_cases(&recipe, &last_run, &out, quiet);
         }
         let interrupt = Interrupt::install()?;
         let progress = Progress::new(quiet);
@@ -96,7 +99,12 @@ impl Run {
                 summaries.push(summary);
             }
         };
-        pipeline::run(&recipe, &out, selection, interrupt.flag(), &|event| match event {
+        let ready = Ready::new(&recipe, &out, selection)?;
+        last_run.check(&out, self.folder.take_over)?;
+        let folder = RunFolder::open(&out).map_err(PipelineError::from)?;
+        // From the beginning: also a run that is stopped has made the folder its own.
+        last_run.write(&out, self.folder.take_over)?;
+        ready.run(&folder, interrupt.flag(), &|event| match event {
             Event::Started(stage) => progress.start(stage),
             Event::Progress(_, done, total) => progress.advance(done, total),
             Event::Finished(stage, manifest) => {
@@ -122,7 +130,6 @@ impl Run {
                 note(quiet, "what is done is kept: the same command continues");
             }
         })?;
-        last_run.write(&out)?;
         if self.json {
             let stages = summaries.into_inner().unwrap_or_default();
             return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);
@@ -132,7 +139,13 @@ impl Run {
     }
 
     /// All cases of a recipe with a section `[sweep]`, on this machine.
-    fn run_cases(&self, recipe: &Recipe, out: &Path, quiet: bool) -> Result<(), CliError> {
+    fn run_cases(
+        &self,
+        recipe: &Recipe,
+        last_run: &LastRun,
+        out: &Path,
+        quiet: bool,
+    ) -> Result<(), CliError> {
         if self.only.is_some() || self.from.is_some() || self.force.is_some() {
             return Err(CliError::input(
                 "the recipe has a section [sweep]: --only, --from and --force are for one case, whose folder \
@@ -148,6 +161,7 @@ impl Run {
         // Paths in the recipes of the cases must lead somewhere from their folders too.
         let recipe = recipe.clone().absolute().map_err(CliError::failure)?;
         let out = &std::path::absolute(out).map_err(CliError::failure)?;
+        claim_sweep(&recipe, last_run, out, self.folder.take_over)?;
         let manifest = sweep::run(&recipe, out, watch, &|case, event| tell(quiet, case, &event));
         bar.finish();
         let manifest = manifest?;

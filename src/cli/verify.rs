@@ -10,7 +10,7 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{json, print};
 use crate::artifact::{
-    Manifest, PACK_EXTENSION, RunView, SOLVES_FOLDER, read_pack_info, read_stored_solve,
+    Input, Manifest, PACK_EXTENSION, RunView, SOLVES_FOLDER, read_pack_info, read_stored_solve,
 };
 use crate::stages::Stage;
 use crate::sweep::{self, CASES_FOLDER, SURFACES_FOLDER};
@@ -24,8 +24,9 @@ Examples:
 
 /// Compare every file of a run folder with the digest it was written with.
 ///
-/// Results are compared with the manifest of their stage, stored solves with the digest they carry. Exit
-/// code 1 if anything is damaged or missing; a run computes a damaged stage anew, and leaves damaged solves out.
+/// Results are compared with the manifest of their stage, what a stage has read with the results of the stages
+/// before it, stored solves with the digest they carry. Exit code 1 if anything is damaged, missing, of another run
+/// or not asperity's; a run computes such a stage anew, and leaves damaged solves out.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Verify {
@@ -71,7 +72,8 @@ impl Verify {
         let damaged: usize = findings.iter().map(|finding| finding.damaged.len()).sum();
         if damaged > 0 {
             return Err(CliError::failure(format!(
-                "{damaged} files of {} are not what was written; `asperity run` makes them anew",
+                "{damaged} faults in {}, listed above: `asperity run` computes such stages anew, once what is not \
+                 asperity's is moved away",
                 self.run.display()
             )));
         }
@@ -98,23 +100,74 @@ fn stages(run: &Path) -> Result<Vec<Finding>, CliError> {
         if !is_stage(&name) || folder.is_symlink() {
             continue;
         }
-        let view = RunView::of(run);
-        let finding = match view.stage_manifest(&name) {
-            Ok(Some(manifest)) => {
-                let damaged = manifest.outputs.iter();
-                let damaged = damaged.filter_map(|output| view.verify_output(&name, output).err());
-                let damaged = damaged.map(|error| error.to_string()).collect();
-                Finding { name, files: manifest.outputs.len() + 1, damaged }
-            }
-            Ok(None) => {
-                let missing = format!("{}: missing", folder.join(Manifest::FILE).display());
-                Finding { name, files: 0, damaged: vec![missing] }
-            }
-            Err(error) => Finding { name, files: 1, damaged: vec![error.to_string()] },
-        };
-        findings.push(finding);
+        findings.push(stage(&RunView::of(run), name)?);
     }
     Ok(findings)
+}
+
+/// What is wrong with the result of a stage.
+fn stage(view: &RunView, name: String) -> Result<Finding, CliError> {
+    let folder = view.path().join(&name);
+    let manifest = match view.stage_manifest(&name) {
+        Ok(Some(manifest)) => manifest,
+        Ok(None) => {
+            let missing = format!("{}: missing", folder.join(Manifest::FILE).display());
+            return Ok(Finding { name, files: 0, damaged: vec![missing] });
+        }
+        Err(error) => return Ok(Finding { name, files: 1, damaged: vec![error.to_string()] }),
+    };
+    let outputs = manifest.outputs.iter();
+    let damaged = outputs.filter_map(|output| view.verify_output(&name, output).err());
+    let mut damaged: Vec<String> = damaged.map(|error| error.to_string()).collect();
+    if manifest.stage != name {
+        damaged.push(format!(
+            "{}: it is the result of the stage {}: put it back, or run again",
+            folder.display(),
+            manifest.stage
+        ));
+    }
+    let unlisted = view.unlisted(&name).map_err(CliError::failure)?;
+    damaged.extend(unlisted.iter().map(|path| {
+        format!("{}: its manifest does not list it, so asperity did not write it: move it away", path.display())
+    }));
+    damaged.extend(manifest.inputs.iter().filter_map(|input| wrong_input(view, &name, input)));
+    Ok(Finding { name, files: manifest.outputs.len() + 1, damaged })
+}
+
+/// Why what a stage has read is not what is there now; none if it is, or if it came from outside of the folder.
+fn wrong_input(view: &RunView, stage: &str, input: &Input) -> Option<String> {
+    if input.origin.is_some() {
+        return None;
+    }
+    let (upstream, file) = input.name.rsplit_once('/')?;
+    let (folder, upstream) = match upstream.rsplit_once('/') {
+        // The tables of a sweep are made of those of its cases.
+        Some((case, upstream)) if stage == sweep::STAGE => {
+            (view.path().join(CASES_FOLDER).join(case), upstream)
+        }
+        Some(_) => return None,
+        None => (view.path().to_owned(), upstream),
+    };
+    if !is_stage(upstream) {
+        return None;
+    }
+    let before = RunView::of(folder);
+    let path = before.file(upstream, file);
+    let what = match before.stage_manifest(upstream) {
+        // A manifest that cannot be read is a fault of that stage.
+        Err(_) => return None,
+        Ok(manifest) => match manifest.as_ref().and_then(|manifest| manifest.output(file)) {
+            Some(output) if output.content_digest == input.digest => return None,
+            Some(output) => format!("and holds {:#} now", output.content_digest),
+            None => "and is not there now".into(),
+        },
+    };
+    Some(format!(
+        "{}: it was computed from another {}, which held {:#} {what}: run again, or move it away if the recipe has no such stage any more",
+        view.path().join(stage).display(),
+        path.display(),
+        input.digest
+    ))
 }
 
 fn is_stage(name: &str) -> bool {
@@ -148,6 +201,10 @@ fn solves(store: &Path) -> Result<Option<Finding>, CliError> {
     }
     let mut finding = Finding { name: SOLVES_FOLDER.into(), files: 0, damaged: Vec::new() };
     for folder in folders(store)? {
+        // A link is not asperity's, nor what it leads to.
+        if folder.is_symlink() {
+            continue;
+        }
         for path in entries(&folder)? {
             let kind = path.extension().unwrap_or_default();
             let (key, intact) = if kind == "json" {

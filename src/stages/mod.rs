@@ -193,14 +193,6 @@ pub enum StageError {
         /// The file.
         path: PathBuf,
     },
-    /// The stored solves cannot be removed.
-    #[error("cannot remove {}: {source}", path.display())]
-    RemoveSolves {
-        /// Their folder.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
     /// A scan named as the average over the scans is.
     #[error("{}: `average` stands for the average over all scans in the tables; rename the file", path.display())]
     ReservedName {

@@ -7,7 +7,7 @@ use super::slurm::shell_word;
 use super::table::{FRICTION_FILE, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
-    Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore, TOOL_VERSION,
+    ArtifactError, Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore, TOOL_VERSION,
     write_by_rename,
 };
 use crate::pipeline::{self, Event, Selection};
@@ -299,12 +299,16 @@ fn one_case(
     let input = manifest.and_then(|manifest| manifest.input(tables::FRICTION_FILE));
     let input = input
         .map(|input| Input { name: format!("{}/{}", case.folder.display(), input.name), ..input });
-    let input = input.ok_or_else(|| crate::artifact::ArtifactError::NoResult {
+    let input = input.ok_or_else(|| ArtifactError::NoResult {
         path: view.path().to_owned(),
         stage: name.to_owned(),
     })?;
     Ok((input, rows.into_iter().map(|row| SweepFrictionRow::new(case, row)).collect()))
 }
+
+/// First line of the recipe of a case, before the digest of the lines below.
+const RECIPE_HEAD: &str =
+    "# Written by asperity from the recipe of the sweep, where it is to be edited. Lines below: ";
 
 /// The recipe of the case alone, for `asperity status`, `run` and `report` of its folder.
 fn write_recipe(case: &Case, folder: &Path) -> Result<(), SweepError> {
@@ -313,8 +317,31 @@ fn write_recipe(case: &Case, folder: &Path) -> Result<(), SweepError> {
         .recipe
         .to_toml()
         .map_err(|reason| SweepError::BadPlan { path: path.clone(), reason })?;
+    let text = format!("{RECIPE_HEAD}{}\n{text}", Digest::of_bytes(text.as_bytes()));
     if std::fs::read_to_string(&path).is_ok_and(|there| there == text) {
         return Ok(());
     }
+    check_recipe(folder)?;
     Ok(write_by_rename(&path, text.as_bytes())?)
+}
+
+/// Fails for a recipe in the folder of a case that is not as asperity wrote it.
+pub(super) fn check_recipe(folder: &Path) -> Result<(), SweepError> {
+    let path = folder.join(RECIPE_FILE);
+    if !path.exists() && !path.is_symlink() {
+        return Ok(());
+    }
+    let text = std::fs::read_to_string(&path).unwrap_or_default();
+    let lines = text.strip_prefix(RECIPE_HEAD).and_then(|rest| rest.split_once('\n'));
+    let own = lines.is_some_and(|(digest, lines)| {
+        digest == Digest::of_bytes(lines.as_bytes()).to_string() && !path.is_symlink()
+    });
+    if own {
+        return Ok(());
+    }
+    Err(SweepError::Artifact(ArtifactError::Foreign {
+        path,
+        what: "is not as asperity writes it for a case, and would be replaced".into(),
+        remedy: "move it away (what a case asks for is said in the recipe of the sweep)".into(),
+    }))
 }

@@ -9,17 +9,16 @@
 //!   sweep/friction.arrow      the tables of all cases
 //! ```
 
-use super::SweepError;
-use crate::artifact::SOLVES_FOLDER;
+use super::{STAGE, SweepError};
+use crate::artifact::{ArtifactError, RunView, SOLVES_FOLDER};
+pub use crate::artifact::{CASES_FOLDER, SURFACES_FOLDER};
+use crate::pipeline;
 use crate::recipe::Case;
+use crate::stages::Stage;
 use std::io;
 use std::path::{Path, PathBuf};
 
 const PLANS: &str = "plans";
-/// Folder of the surfaces of all specimens and seeds.
-pub const SURFACES_FOLDER: &str = "surfaces";
-/// Folder of the cases.
-pub const CASES_FOLDER: &str = "cases";
 /// File of a plan in its folder.
 pub(super) const PLAN_FILE: &str = "plan.json";
 /// The recipe of a case, in its folder.
@@ -80,6 +79,38 @@ impl Layout {
         self.out.join(CASES_FOLDER).join(&case.folder)
     }
 
+    /// Fails for what asperity did not write where results of the sweep or of these cases would go, before
+    /// anything is computed.
+    ///
+    /// # Errors
+    /// [`ArtifactError::Foreign`].
+    pub fn check(&self, cases: &[Case]) -> Result<(), SweepError> {
+        let view = RunView::of(&self.out);
+        view.check_place(STAGE)?;
+        for folder in [self.plans(), self.logs()] {
+            self.check_links(&folder)?;
+        }
+        for case in cases {
+            for folder in [self.surfaces(case), self.case(case)] {
+                self.check_links(&folder)?;
+                pipeline::check_places(&folder, Stage::CHAIN)?;
+            }
+            super::collect::check_recipe(&self.case(case))?;
+        }
+        Ok(())
+    }
+
+    /// Fails for a folder on the way from that of the sweep that is a link to elsewhere.
+    pub(super) fn check_links(&self, folder: &Path) -> Result<(), SweepError> {
+        let inside = folder.ancestors().take_while(|folder| *folder != self.out);
+        for folder in inside {
+            if folder.is_symlink() {
+                return Err(ArtifactError::foreign_link(folder).into());
+            }
+        }
+        Ok(())
+    }
+
     /// Makes `link` lead to `target`, both below the folder of the sweep, which may be moved as a whole. What
     /// is there already stays.
     pub(super) fn link(&self, target: &Path, link: &Path) -> Result<(), SweepError> {
@@ -89,6 +120,7 @@ impl Layout {
         let up = inner.components().skip(1).map(|_| "..");
         let relative: PathBuf = up.collect::<PathBuf>().join(target);
         let folder = link.parent().unwrap_or(&self.out);
+        self.check_links(folder)?;
         std::fs::create_dir_all(folder).map_err(failed)?;
         match std::os::unix::fs::symlink(relative, link) {
             Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(failed(error)),

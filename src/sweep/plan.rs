@@ -253,13 +253,14 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
     fn failed(path: &Path) -> impl Fn(std::io::Error) -> SweepError {
         move |source| SweepError::Io { action: "write", path: path.to_owned(), source }
     }
+    layout.check_links(&plans)?;
     std::fs::create_dir_all(&plans).map_err(failed(&plans))?;
     let place = plans.join(format!("{:#}", plan.digest));
     if is_whole(&place.join(PLAN_FILE)) {
         return Ok(place.join(PLAN_FILE));
     }
     let folder = tempfile::Builder::new()
-        .prefix(".tmp-")
+        .prefix(".asperity-")
         .permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777))
         .tempdir_in(&plans)
         .map_err(failed(&plans))?;
@@ -269,11 +270,15 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
     write_json(&folder.path().join(PLAN_FILE), plan)?;
     match std::fs::rename(folder.path(), &place) {
         Ok(()) => drop(folder.keep()),
-        // Another process has made it; what is damaged gives way to what is not.
+        // Another process has made it.
         Err(_) if is_whole(&place.join(PLAN_FILE)) => {}
+        // What is damaged gives way to what is not, file by file.
         Err(_) => {
-            std::fs::remove_dir_all(&place).map_err(failed(&place))?;
-            std::fs::rename(folder.keep(), &place).map_err(failed(&place))?;
+            layout.check_links(&place)?;
+            for list in lists {
+                write_json(&place.join(ShardTasks::file(list.shard)), list)?;
+            }
+            write_json(&place.join(PLAN_FILE), plan)?;
         }
     }
     Ok(place.join(PLAN_FILE))

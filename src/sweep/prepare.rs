@@ -57,6 +57,7 @@ impl Prepared {
                 pipeline::check(&case.recipe, prepared.scans(case)).map_err(of_case(case))?;
             }
         }
+        prepared.layout.check(&prepared.cases)?;
         prepared.surfaces = prepared.make_surfaces(watch)?;
         Ok(prepared)
     }

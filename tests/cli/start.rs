@@ -115,7 +115,7 @@ fn damage_is_found_and_named() {
     assert_eq!(damaged.code, 1);
     assert!(damaged.stdout.contains("curves.arrow"), "{}", damaged.stdout);
     assert!(
-        damaged.stderr.contains("2 files of out are not what was written"),
+        damaged.stderr.contains("2 faults in out"),
         "{}",
         damaged.stderr
     );

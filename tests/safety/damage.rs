@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::{files, finished, quietly};
+use super::{Campaign, files, finished, quietly};
 use crate::digests::digests;
 use crate::outcome::Outcome;
 
@@ -22,6 +22,19 @@ fn copy(from: &Path, to: &Path) {
 /// Files that hold no result: the lock, whose content is for people.
 fn is_result(file: &Path) -> bool {
     file.file_name().is_some_and(|name| name != ".lock")
+}
+
+/// Runs, after the folder of a manifest that cannot be read any more is removed as the run says.
+fn run_again(campaign: &Campaign, damaged: &Path) {
+    let run = quietly(campaign, "run recipe.toml --out out");
+    if damaged.ends_with("manifest.json") && run.code == 2 {
+        let folder = Path::new("out").join(damaged.parent().unwrap());
+        assert!(run.stderr.contains(&folder.display().to_string()), "{}", run.stderr);
+        fs::remove_dir_all(campaign.root().join(folder)).unwrap();
+        quietly(campaign, "run recipe.toml --out out").result();
+    } else {
+        run.result();
+    }
 }
 
 #[test]
@@ -110,7 +123,7 @@ fn damage_to_any_file_is_found_named_and_mended() {
                 exported.stdout
             );
             if !spares {
-                quietly(&campaign, "run recipe.toml --out out").result();
+                run_again(&campaign, name);
                 assert_eq!(digests(&out), whole, "{name:?} {what}");
                 quietly(&campaign, "verify out").result();
             }

@@ -11,7 +11,9 @@ mod outcome;
 mod changes;
 mod damage;
 mod disk;
+mod foreign;
 mod kills;
+mod mixed;
 mod sizes;
 mod two_runs;
 
@@ -51,7 +53,7 @@ fn leftovers(out: &Path) -> Vec<PathBuf> {
         let names = path.strip_prefix(out).unwrap().components();
         names
             .map(|name| name.as_os_str().to_string_lossy())
-            .any(|name| name.starts_with(".tmp-") || name.starts_with(".old-"))
+            .any(|name| name.starts_with(".asperity") || name.starts_with(".tmp-"))
     };
     files(out).into_iter().filter(temporary).collect()
 }

@@ -4,15 +4,17 @@ mod pack;
 
 pub use pack::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, Solves, read_pack_info};
 
-use std::fs::{self, Permissions};
+use std::collections::BTreeSet;
+use std::fs;
 use std::io::{self, Write};
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::own::{self, temporary_beside};
 use super::{ArtifactError, Digest};
 
 /// Schema name of the file of a stored solve.
@@ -31,6 +33,8 @@ const VERSION: u32 = 1;
 pub struct SolveStore {
     dir: PathBuf,
     packed: bool,
+    /// What was kept since, for a store that is to be filled anew.
+    anew: Option<Arc<Mutex<BTreeSet<Digest>>>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -46,11 +50,26 @@ impl SolveStore {
     /// Opens a store, creating its folder if needed.
     ///
     /// # Errors
-    /// [`ArtifactError::Io`] if the folder cannot be created.
+    /// [`ArtifactError::Foreign`] if the folder is a link that asperity did not make, [`ArtifactError::Io`] if it
+    /// cannot be created.
     pub fn open(dir: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
         let dir = dir.into();
+        own::check_solves(&dir)?;
         fs::create_dir_all(&dir).map_err(ArtifactError::io("create", &dir))?;
-        Ok(Self { dir, packed: false })
+        Ok(Self { dir, packed: false, anew: None })
+    }
+
+    /// The same store, in which only what is kept from now on counts as there: the solves of a stage that is to be
+    /// computed again replace the old ones one by one, and those of other stages stay.
+    #[must_use]
+    pub fn anew(self) -> Self {
+        Self { anew: Some(Arc::default()), ..self }
+    }
+
+    /// Whether what is kept under that key counts.
+    fn counts(&self, key: &Digest) -> bool {
+        let kept = self.anew.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        kept.is_none_or(|kept| kept.contains(key))
     }
 
     /// Opens a store that keeps all solves of a problem in one file (see [`Solves`]), for the shards of a sweep:
@@ -68,6 +87,9 @@ impl SolveStore {
     /// # Errors
     /// [`ArtifactError::Io`] if a file that exists cannot be read or removed.
     pub fn get<T: DeserializeOwned>(&self, key: &Digest) -> Result<Option<T>, ArtifactError> {
+        if !self.counts(key) {
+            return Ok(None);
+        }
         let path = self.path(key);
         let bytes = match fs::read(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -106,7 +128,11 @@ impl SolveStore {
             payload,
         };
         let bytes = serde_json::to_vec(&entry).map_err(|error| unfit(key, &error))?;
-        write_by_rename(&self.path(key), &bytes)
+        write_by_rename(&self.path(key), &bytes)?;
+        if let Some(kept) = &self.anew {
+            kept.lock().unwrap_or_else(PoisonError::into_inner).insert(*key);
+        }
+        Ok(())
     }
 
     /// 256 folders at most, so that none grows large.
@@ -171,12 +197,12 @@ fn unfit(key: &Digest, error: &serde_json::Error) -> ArtifactError {
 /// [`ArtifactError::Io`].
 pub(crate) fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
     let folder = path.parent().unwrap_or(Path::new(""));
+    if folder.is_symlink() {
+        return Err(ArtifactError::foreign_link(folder));
+    }
     fs::create_dir_all(folder).map_err(ArtifactError::io("create", folder))?;
-    let mut file = tempfile::Builder::new()
-        .prefix(".tmp-")
-        .permissions(Permissions::from_mode(0o666))
-        .tempfile_in(folder)
-        .map_err(ArtifactError::io("create a file in", folder))?;
+    let mut file =
+        temporary_beside(path).map_err(ArtifactError::io("create a file in", folder))?;
     file.write_all(bytes).map_err(ArtifactError::io("write", path))?;
     file.persist(path).map_err(|error| ArtifactError::io("rename to", path)(error.error))?;
     Ok(())

@@ -110,6 +110,7 @@ impl SolveStore {
     pub fn problem(&self, problem: &Digest) -> Result<Solves<'_>, ArtifactError> {
         let ours = |pack: &Pack| !self.packed || pack.tool_version == TOOL_VERSION;
         let pack = match Pack::read(&self.pack_path(problem)) {
+            _ if self.anew.is_some() => Pack::empty(*problem),
             Ok(pack) if pack.problem == *problem && ours(&pack) => pack,
             Err(ArtifactError::Io { cause, action, path })
                 if cause.kind() != io::ErrorKind::NotFound =>

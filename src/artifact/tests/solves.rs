@@ -182,3 +182,35 @@ fn a_pack_that_is_not_as_it_was_written_counts_as_absent() {
     finish(&store, &problem, &[task]);
     assert!(store.pack_info(&problem).is_ok());
 }
+
+/// A stage that is computed again finds nothing of before, and takes nothing from other stages.
+#[test]
+fn a_store_that_is_filled_anew_keeps_what_it_does_not_replace() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = SolveStore::open(folder.path()).unwrap();
+    let other = Digest::of_bytes(b"of another stage");
+    store.put(&key(), &solve()).unwrap();
+    store.put(&other, &solve()).unwrap();
+    let anew = store.clone().anew();
+    assert_eq!(anew.get::<Solve>(&key()).unwrap(), None);
+    let changed = Solve { friction: 0.7, ..solve() };
+    anew.problem(&key()).unwrap().put(&key(), &changed).unwrap();
+    assert_eq!(anew.clone().get(&key()).unwrap(), Some(changed.clone()));
+    assert_eq!(store.get(&key()).unwrap(), Some(changed));
+    assert_eq!(store.get(&other).unwrap(), Some(solve()));
+}
+
+/// A link would lead writes and removals to what others own.
+#[test]
+fn a_store_is_not_reached_through_links_of_others() {
+    let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let link = folder.path().join("solves");
+    std::os::unix::fs::symlink(elsewhere.path(), &link).unwrap();
+    let refused = SolveStore::open(&link).unwrap_err();
+    assert!(matches!(refused, ArtifactError::Foreign { .. }), "{refused}");
+    let store = SolveStore::open(folder.path().join("own")).unwrap();
+    let shelf = file_of(&folder.path().join("own"), &key()).parent().unwrap().to_owned();
+    std::os::unix::fs::symlink(elsewhere.path(), shelf).unwrap();
+    assert!(matches!(store.put(&key(), &solve()), Err(ArtifactError::Foreign { .. })));
+    assert_eq!(fs::read_dir(elsewhere.path()).unwrap().count(), 0);
+}

@@ -29,16 +29,20 @@ fn fill(pending: &mut Pending) {
     pending
         .write_arrays("heights.h5", "asperity.test.heights", 1, "Heights", Storage::Plain, &[array])
         .unwrap();
-    fs::write(pending.path("notes.txt"), "notes").unwrap();
+    fs::write(pending.path("notes.txt").unwrap(), "notes").unwrap();
     pending.record("notes.txt", "asperity.test.notes", 1, None).unwrap();
 }
 
 fn run_stage(run: &RunFolder, revision: u32) {
+    commit(run, revision).unwrap();
+}
+
+fn commit(run: &RunFolder, revision: u32) -> Result<(), ArtifactError> {
     let mut pending = run.begin("bem").unwrap();
     fill(&mut pending);
     let outputs = pending.outputs().to_vec();
     let manifest = Manifest::new(&identity(revision), outputs, Vec::new(), 1.0).unwrap();
-    pending.commit(&manifest).unwrap();
+    pending.commit(&manifest)
 }
 
 fn entries(path: &Path) -> Vec<String> {
@@ -76,10 +80,16 @@ fn a_newer_result_replaces_the_old_one_whole() {
     let folder = tempfile::tempdir().unwrap();
     let run = RunFolder::open(folder.path()).unwrap();
     run_stage(&run, 1);
-    fs::write(run.file("bem", "stray"), "").unwrap();
+    fs::write(run.file("bem", "stray"), "mine").unwrap();
+    let refused = commit(&run, 2).unwrap_err();
+    assert!(matches!(refused, ArtifactError::Foreign { .. }), "{refused}");
+    assert!(refused.to_string().contains("bem/stray"), "{refused}");
+    assert_eq!(run.unlisted("bem").unwrap(), [run.file("bem", "stray")]);
+    assert_eq!(fs::read(run.file("bem", "stray")).unwrap(), b"mine");
+    assert_eq!(run.stage_manifest("bem").unwrap().unwrap().stage_revision, 1);
+    fs::remove_file(run.file("bem", "stray")).unwrap();
     run_stage(&run, 2);
     assert_eq!(run.stage_manifest("bem").unwrap().unwrap().stage_revision, 2);
-    assert!(!run.file("bem", "stray").exists());
     assert_eq!(entries(run.path()), [".lock", "bem"]);
 }
 
@@ -117,8 +127,8 @@ fn a_kill_between_the_renames_brings_the_old_result_back() {
     let run = RunFolder::open(folder.path()).unwrap();
     run_stage(&run, 1);
     drop(run);
-    fs::rename(folder.path().join("bem"), folder.path().join(".old-bem")).unwrap();
-    fs::create_dir(folder.path().join(".tmp-bem-x")).unwrap();
+    fs::rename(folder.path().join("bem"), folder.path().join(".asperity-old-bem-x")).unwrap();
+    fs::create_dir(folder.path().join(".asperity-new-bem-x")).unwrap();
     let run = RunFolder::open(folder.path()).unwrap();
     assert_eq!(entries(run.path()), [".lock", "bem"]);
     run.verify("bem").unwrap();
@@ -130,7 +140,7 @@ fn a_kill_after_the_renames_keeps_the_new_result() {
     let run = RunFolder::open(folder.path()).unwrap();
     run_stage(&run, 2);
     drop(run);
-    fs::create_dir(folder.path().join(".old-bem")).unwrap();
+    fs::create_dir(folder.path().join(".asperity-old-bem-x")).unwrap();
     let run = RunFolder::open(folder.path()).unwrap();
     assert_eq!(entries(run.path()), [".lock", "bem"]);
     assert_eq!(run.stage_manifest("bem").unwrap().unwrap().stage_revision, 2);
@@ -200,4 +210,110 @@ fn a_folder_that_cannot_be_made_is_named() {
     fs::write(&file, "").unwrap();
     let message = RunFolder::open(file.join("out")).unwrap_err().to_string();
     assert!(message.contains("cannot create") && message.contains("file/out"), "{message}");
+}
+
+/// Foreign files in every place that is cleared, replaced or written, each with a word of what is said of it.
+#[test]
+fn what_asperity_did_not_write_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = RunFolder::open(folder.path()).unwrap();
+    run_stage(&run, 1);
+    // A kill in the middle of a result, to which a user has added a file.
+    let mut pending = run.begin("bem").unwrap();
+    fill(&mut pending);
+    let begun = pending.path("more.arrow").unwrap();
+    fs::write(&begun, "half").unwrap();
+    fs::write(begun.with_file_name("mine"), "mine").unwrap();
+    std::mem::forget(pending);
+    drop(run);
+    let key = Digest::of_bytes(b"key");
+    let solves = folder.path().join("solves").join(&key.to_string()[..2]);
+    fs::create_dir_all(&solves).unwrap();
+    let half = solves.join(format!(".asperity-{key}.json-AbCdEf"));
+    fs::write(&half, "{").unwrap();
+    let foreign = [
+        begun.with_file_name("mine"),
+        folder.path().join(".tmp-bem-x"),
+        folder.path().join(".old-bem"),
+        folder.path().join(".asperity-last_run.json-AbCdEf"),
+        folder.path().join(".asperity-notes"),
+        solves.join(".asperity-notes.json-AbCdEf"),
+        solves.join(".tmp-x"),
+    ];
+    for file in &foreign {
+        fs::write(file, "mine").unwrap();
+    }
+    let begun_note = folder.path().join(".asperity-last_run.json-GhIjKl");
+    fs::write(&begun_note, &super::super::own::NOTE_HEAD[..20]).unwrap();
+    RunFolder::open(folder.path()).unwrap();
+    for file in &foreign {
+        assert_eq!(fs::read(file).unwrap(), b"mine", "{}", file.display());
+    }
+    // Of asperity's own nothing is left.
+    assert_eq!(entries(begun.parent().unwrap()), ["mine"]);
+    assert!(!half.exists() && !begun_note.exists());
+}
+
+#[test]
+fn a_place_that_is_not_asperitys_is_refused_and_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    fs::write(elsewhere.path().join("scan.txt"), "mine").unwrap();
+    let place = folder.path().join("bem");
+    let makes: [(&str, &dyn Fn()); 5] = [
+        ("bem was not written", &|| fs::write(&place, "mine").unwrap()),
+        ("scan.txt is in a folder", &|| {
+            fs::create_dir(&place).unwrap();
+            fs::write(place.join("scan.txt"), "mine").unwrap();
+        }),
+        ("manifest.json cannot be used", &|| {
+            fs::create_dir(&place).unwrap();
+            fs::write(place.join("manifest.json"), "{}").unwrap();
+        }),
+        ("that of the stage fem", &|| {
+            fs::create_dir(&place).unwrap();
+            let manifest = r#"{"schema": "asperity.manifest", "stage": "fem", "outputs": []}"#;
+            fs::write(place.join("manifest.json"), manifest).unwrap();
+        }),
+        ("bem is a link", &|| std::os::unix::fs::symlink(elsewhere.path(), &place).unwrap()),
+    ];
+    for (said, make) in makes {
+        make();
+        let before = super::tree(folder.path());
+        for run in [RunFolder::open(folder.path()), RunFolder::share(folder.path())] {
+            let refused = commit(&run.unwrap(), 1).unwrap_err().to_string();
+            assert!(refused.contains(said), "{said}: {refused}");
+        }
+        fs::remove_file(folder.path().join(".lock")).unwrap();
+        assert_eq!(super::tree(folder.path()), before, "{said}");
+        assert_eq!(super::tree(elsewhere.path()).len(), 1);
+        if place.is_dir() && !place.is_symlink() {
+            fs::remove_dir_all(&place).unwrap();
+        } else {
+            fs::remove_file(&place).unwrap();
+        }
+    }
+    // An empty folder has nothing to lose.
+    fs::create_dir(&place).unwrap();
+    commit(&RunFolder::open(folder.path()).unwrap(), 1).unwrap();
+}
+
+#[test]
+fn a_file_of_the_name_of_the_lock_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(".lock");
+    for text in ["mine", "process 12, said I", "process \n"] {
+        fs::write(&path, text).unwrap();
+        let refused = RunFolder::open(folder.path()).unwrap_err();
+        assert!(matches!(refused, ArtifactError::Foreign { .. }), "{refused}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+    // An empty one may be that of a run that was killed as it made it, or another's: it is used and stays empty.
+    fs::write(&path, "").unwrap();
+    RunFolder::open(folder.path()).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"");
+    // That of an earlier version.
+    fs::write(&path, "process 4711\n").unwrap();
+    RunFolder::open(folder.path()).unwrap();
+    assert!(fs::read_to_string(&path).unwrap().contains(&std::process::id().to_string()));
 }

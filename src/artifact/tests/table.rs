@@ -280,12 +280,12 @@ fn polars_reads_the_values_and_exports_read_back() {
     assert_eq!(frame.column("friction").unwrap().null_count(), 1);
 
     let parquet = folder.path().join("samples.parquet");
-    write_parquet(&mut frame.clone(), &parquet).unwrap();
+    std::fs::write(&parquet, parquet_bytes(&mut frame.clone()).unwrap()).unwrap();
     let read = ParquetReader::new(std::fs::File::open(parquet).unwrap()).finish().unwrap();
     assert!(read.equals_missing(&frame));
 
     let csv = folder.path().join("samples.csv");
-    write_csv(&mut frame.clone(), &csv).unwrap();
+    std::fs::write(&csv, csv_bytes(&frame).unwrap()).unwrap();
     let mut reader = ::csv::Reader::from_path(csv).unwrap();
     let lists = frame.get_column_index("amplitudes_mm").unwrap();
     let record = reader.records().next().unwrap().unwrap();

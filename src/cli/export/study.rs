@@ -1,7 +1,7 @@
 //! Export of the study of one sine wave.
 
 use super::{Export, Format};
-use crate::artifact::{RunView, data_frame, write_csv};
+use crate::artifact::{RunView, csv_bytes, data_frame};
 use crate::cli::CliError;
 use crate::report::{Study, study_figure};
 
@@ -36,9 +36,9 @@ impl Export {
         })?;
         let manifest = view.stage_manifest(STAGE).map_err(CliError::input)?;
         for output in manifest.into_iter().flat_map(|manifest| manifest.outputs) {
-            let mut frame = data_frame(&view.file(STAGE, &output.file)).map_err(CliError::input)?;
+            let frame = data_frame(&view.file(STAGE, &output.file)).map_err(CliError::input)?;
             let path = folder.join(&output.file).with_extension("csv");
-            self.by_rename(&path, |temporary| write_csv(&mut frame, temporary))?;
+            self.bytes(&path, csv_bytes(&frame))?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The tables of all cases of a sweep.
 
 use super::{CliError, Export, Format, csv_text, print};
-use crate::artifact::{RunView, data_frame, write_csv, write_parquet};
+use crate::artifact::{RunView, csv_bytes, data_frame, parquet_bytes};
 use crate::report::{About, friction_tables, latex, markdown};
 use crate::stages::tables::FrictionRow;
 use crate::sweep::{FRICTION_FILE, STAGE, SweepFrictionRow};
@@ -37,13 +37,9 @@ impl Export {
         view.verify(STAGE).map_err(CliError::input)?;
         let mut frame = data_frame(&view.file(STAGE, FRICTION_FILE)).map_err(CliError::input)?;
         match (self.format, &self.to) {
-            (Format::Csv, None) => print(&csv_text(&mut frame)?),
-            (Format::Csv, Some(path)) => {
-                self.by_rename(path, |temporary| write_csv(&mut frame, temporary))
-            }
-            (_, Some(path)) => {
-                self.by_rename(path, |temporary| write_parquet(&mut frame, temporary))
-            }
+            (Format::Csv, None) => print(&csv_text(&frame)?),
+            (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
+            (_, Some(path)) => self.bytes(path, parquet_bytes(&mut frame)),
             (_, None) => Err(CliError::input("Parquet is binary: give a file with --to")),
         }
     }

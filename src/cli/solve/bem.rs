@@ -11,7 +11,7 @@ use super::error_estimate::ErrorEstimate;
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
-use crate::cli::output::{aligned, json, note, print, significant, write_file};
+use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
 use crate::cli::{CliError, values};
 use crate::contact::refine::{OnGrid, RefineError, Refined, Refinement, Watched, on_grid};
 use crate::contact::sliding::POINTS_RANGE;
@@ -79,9 +79,12 @@ pub(in crate::cli) struct Bem {
     #[arg(long)]
     json: bool,
     /// Also write x, height (about the mean line), pressure and separation at the grid points to
-    /// this CSV file: x_mm, height_mm, pressure_mpa, separation_mm. An existing file is replaced.
+    /// this CSV file: x_mm, height_mm, pressure_mpa, separation_mm.
     #[arg(long, value_name = "FILE")]
     fields: Option<PathBuf>,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    force: bool,
 }
 
 /// What is printed; the names are the keys of the JSON object.
@@ -110,6 +113,7 @@ impl Bem {
             note(quiet, format_args!("warning: {warning}"));
         }
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;
+        refuse_existing(self.fields.as_deref(), self.force)?;
         let start = Instant::now();
         let refined = self.solve(rubber, &shape)?;
         let solution = &refined.solution;
@@ -136,7 +140,7 @@ impl Bem {
             );
         }
         if let Some(path) = &self.fields {
-            write_file(path, true, |out| write_fields(out, &shape, solution))?;
+            write_file(path, self.force, |out| write_fields(out, &shape, solution))?;
         }
         print(&if self.json { json(&summary)? } else { summary.table() })
     }

@@ -10,7 +10,7 @@ use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use super::resolution;
 use super::shape::{Shape, ShapeOptions};
-use crate::cli::output::{json, note, print, write_file};
+use crate::cli::output::{json, note, print, refuse_existing, write_file};
 use crate::cli::progress::Spinner;
 use crate::cli::{CliError, values};
 use crate::contact::SlidingContact;
@@ -88,15 +88,17 @@ pub(in crate::cli) struct Fem {
     #[arg(long)]
     json: bool,
     /// Also write position, height (about the mean line), normal pressure and separation at the
-    /// contact nodes to this CSV file: x_mm, height_mm, pressure_mpa, separation_mm. An existing
-    /// file is replaced; steady route only.
+    /// contact nodes to this CSV file: x_mm, height_mm, pressure_mpa, separation_mm. Steady
+    /// route only.
     #[arg(long, value_name = "FILE")]
     fields: Option<PathBuf>,
     /// Write the time steps of the transient route to this CSV file: time_s, pressure_mpa,
-    /// displacement_mm, friction_coefficient, contact_area_fraction, mean_separation_mm. An
-    /// existing file is replaced.
+    /// displacement_mm, friction_coefficient, contact_area_fraction, mean_separation_mm.
     #[arg(long, value_name = "FILE")]
     series: Option<PathBuf>,
+    /// Overwrite files that are there already.
+    #[arg(long)]
+    force: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -200,7 +202,9 @@ impl Fem {
         }
         let inputs = [self.shape.profile.as_deref(), self.material.file()];
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &inputs)?;
-        refuse_to_overwrite(self.series.as_deref(), "--series", &inputs)
+        refuse_to_overwrite(self.series.as_deref(), "--series", &inputs)?;
+        refuse_existing(self.fields.as_deref(), self.force)?;
+        refuse_existing(self.series.as_deref(), self.force)
     }
 
     /// The block of the options, on the usual number of columns if none is given.
@@ -258,7 +262,7 @@ impl Fem {
             note(quiet, format_args!("warning: {warning}; give more --columns"));
         }
         if let Some(path) = &self.fields {
-            write_file(path, true, |out| write_fields(out, solution))?;
+            write_file(path, self.force, |out| write_fields(out, solution))?;
         }
         Ok(Summary::steady(&refined, start.elapsed().as_secs_f64()))
     }
@@ -323,7 +327,7 @@ impl Fem {
         })?;
         spinner.finish();
         if let Some(path) = &self.series {
-            write_file(path, true, |out| write_series(out, &solution.samples))?;
+            write_file(path, self.force, |out| write_series(out, &solution.samples))?;
         }
         let seconds = start.elapsed().as_secs_f64();
         let summary = Summary::transient(&solution, pressure, elements, seconds);

@@ -16,8 +16,9 @@ use super::last_run::LastRun;
 use super::output::note;
 use super::progress::Bar;
 use super::recipe_options::is_input;
+use crate::artifact::ArtifactError;
 use crate::pipeline::Event;
-use crate::recipe::Case;
+use crate::recipe::{Case, Recipe};
 use crate::stages::Watch;
 use crate::sweep::{Layout, RECIPE_FILE, SweepError};
 
@@ -85,6 +86,21 @@ pub(super) fn tell(quiet: bool, case: &Case, event: &Event) {
     }
 }
 
+/// Makes a folder that of the sweep of a recipe, after a look at what is in it.
+pub(super) fn claim_sweep(
+    recipe: &Recipe,
+    last_run: &LastRun,
+    out: &Path,
+    take_over: bool,
+) -> Result<(), CliError> {
+    last_run.check(out, take_over)?;
+    let layout = Layout::new(out);
+    layout.check(&recipe.cases().map_err(CliError::input)?)?;
+    std::fs::create_dir_all(out)
+        .map_err(|error| CliError::failure(format!("cannot create {}: {error}", out.display())))?;
+    last_run.write(out, take_over)
+}
+
 /// Notes in the folder of each case which recipe its results are of, as `asperity run` does.
 pub(super) fn note_recipes(layout: &Layout, cases: &[Case]) -> Result<(), CliError> {
     for case in cases {
@@ -97,7 +113,7 @@ pub(super) fn note_recipes(layout: &Layout, cases: &[Case]) -> Result<(), CliErr
         let text = std::fs::read_to_string(&path).map_err(|error| {
             CliError::failure(format!("cannot read {}: {error}", path.display()))
         })?;
-        LastRun::new(&path, text, &[], None)?.write(&folder)?;
+        LastRun::new(&path, text, &[], None)?.write(&folder, false)?;
     }
     Ok(())
 }
@@ -146,6 +162,7 @@ impl From<SweepError> for CliError {
         }
         match error {
             SweepError::Case { ref source, .. } if is_input(source) => Self::input(error),
+            SweepError::Artifact(ArtifactError::Foreign { .. }) => Self::input(error),
             SweepError::Recipe(_)
             | SweepError::NoPlan { .. }
             | SweepError::BadPlan { .. }

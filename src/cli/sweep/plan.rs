@@ -4,9 +4,9 @@ use clap::Args;
 use serde_json::json;
 
 use super::super::output::{json as json_text, note, print};
-use super::super::recipe_options::RecipeOptions;
+use super::super::recipe_options::{RecipeOptions, TakeOver};
 use super::super::{CliError, values};
-use super::{duration, watched};
+use super::{claim_sweep, duration, watched};
 use crate::sweep::{SweepPlan, plan};
 
 const EXAMPLES: &str = "\
@@ -24,6 +24,8 @@ Examples:
 pub(in crate::cli) struct Plan {
     #[command(flatten)]
     recipe: RecipeOptions,
+    #[command(flatten)]
+    folder: TakeOver,
     /// Number of shards; minutes of work each are best.
     #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
     shards: usize,
@@ -43,8 +45,10 @@ impl Plan {
         if !(1..=MOST_SHARDS).contains(&shards) {
             return Err(CliError::input(format!("--shards {shards}: give 1 to {MOST_SHARDS}")));
         }
-        let recipe = self.recipe.recipe()?.absolute().map_err(CliError::failure)?;
+        let (recipe, last_run) = self.recipe.recipe_and_origin()?;
+        let recipe = recipe.absolute().map_err(CliError::failure)?;
         let out = std::path::absolute(self.recipe.out()).map_err(CliError::failure)?;
+        claim_sweep(&recipe, &last_run, &out, self.folder.take_over)?;
         let (path, plan) = watched(quiet, "planning", |watch| plan(&recipe, &out, shards, watch))?;
         describe(quiet, &plan);
         if self.json {

@@ -1,0 +1,356 @@
+//! Which files of a run folder asperity wrote: nothing else is removed, renamed or changed.
+//!
+//! - The folder of a stage is asperity's if it holds a manifest of that stage and no entry that the manifest does
+//!   not list.
+//! - A folder in which a result is being written, `.asperity-new-STAGE-x`, keeps a list ([`JOURNAL`]) of the files
+//!   that asperity makes in it, each noted before it is made. A kill leaves it behind; the next run removes what the
+//!   list names.
+//! - A replaced result waits in `.asperity-old-STAGE-x` to be removed, with its manifest to the last.
+//! - A temporary file has the name of the file that it becomes: a digest for stored solves, and for the note of the
+//!   last run also a content that begins as [`NOTE_HEAD`].
+//! - A link is a sweep's own if it leads from a case or a surface to `surfaces` or `solves` of the same sweep.
+
+use std::collections::BTreeSet;
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, Permissions};
+use std::io;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Component, Path, PathBuf};
+
+use serde::Deserialize;
+use tempfile::NamedTempFile;
+
+use super::{ArtifactError, Manifest, SOLVES_FOLDER};
+
+/// Folder of the surfaces of all specimens and seeds in that of a sweep.
+pub const SURFACES_FOLDER: &str = "surfaces";
+/// Folder of the cases in that of a sweep.
+pub const CASES_FOLDER: &str = "cases";
+/// The note of the last run, beside the folders of the stages.
+pub(crate) const NOTE_FILE: &str = "last_run.json";
+/// How the note of the last run begins.
+pub(crate) const NOTE_HEAD: &str = "{\n  \"schema\": \"asperity.last_run\",\n";
+
+/// How the names of all that is temporary begin.
+const PREFIX: &str = ".asperity-";
+/// The list of files in a folder in which a result is being written.
+const JOURNAL: &str = ".asperity";
+const JOURNAL_HEAD: &str =
+    "asperity is writing a result here. If it is stopped, the next run removes these files:\n";
+/// Names that are longer leave no room for a temporary one, 255 bytes at most.
+const LONGEST_NAME: usize = 200;
+
+/// What is at the place of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Nothing, or an empty folder.
+    Free,
+    /// A result, and nothing besides.
+    Result,
+    /// A link to the result of another folder of the sweep.
+    Link,
+}
+
+/// What is at the place of the result of a stage in a run folder.
+///
+/// # Errors
+/// [`ArtifactError::Foreign`] names what asperity did not write, or a manifest that cannot be read.
+pub(super) fn place(run: &Path, stage: &str) -> Result<Place, ArtifactError> {
+    let path = run.join(stage);
+    let kind = match fs::symlink_metadata(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free),
+        read => read.map_err(ArtifactError::io("read", &path))?.file_type(),
+    };
+    if kind.is_symlink() {
+        let own = is_link_of_sweep(&path, &[CASES_FOLDER, SURFACES_FOLDER], SURFACES_FOLDER);
+        return if own { Ok(Place::Link) } else { Err(ArtifactError::foreign_link(&path)) };
+    }
+    if !kind.is_dir() {
+        return Err(in_the_way(&path, &path));
+    }
+    let entries = entries(&path)?;
+    let Some(first) = entries.first() else { return Ok(Place::Free) };
+    let manifest = path.join(Manifest::FILE);
+    let listed = match listed_by_manifest(&path, Some(stage)) {
+        Ok(listed) => listed,
+        Err(_) if !manifest.exists() => return Err(ArtifactError::Foreign {
+            path: first.clone(),
+            what: "is in a folder that a result would have to replace and that has no manifest to say what asperity wrote".into(),
+            remedy: format!("move {} away, or choose another --out", path.display()),
+        }),
+        Err(reason) => {
+            return Err(ArtifactError::Foreign {
+                what: format!(
+                    "cannot be used ({reason}), so that nothing tells which files beside it asperity wrote"
+                ),
+                remedy: format!(
+                    "if nothing in {} is yours, delete that folder and run again",
+                    path.display()
+                ),
+                path: manifest,
+            });
+        }
+    };
+    match entries.iter().find(|entry| !is_listed(entry, &listed)) {
+        Some(foreign) => Err(in_the_way(foreign, &path)),
+        None => Ok(Place::Result),
+    }
+}
+
+fn in_the_way(path: &Path, folder: &Path) -> ArtifactError {
+    ArtifactError::Foreign {
+        path: path.to_owned(),
+        what: format!("was not written by asperity, which would have to replace {}", folder.display()),
+        remedy: "move it away, or choose another --out".into(),
+    }
+}
+
+impl ArtifactError {
+    /// The refusal to write through a link.
+    pub(crate) fn foreign_link(path: &Path) -> Self {
+        Self::Foreign {
+            path: path.to_owned(),
+            what: "is a link that asperity did not make, and it writes through none".into(),
+            remedy: "remove the link, or choose another --out".into(),
+        }
+    }
+}
+
+/// Fails for a folder of solves that is a link, unless it is a sweep's own.
+pub(super) fn check_solves(store: &Path) -> Result<(), ArtifactError> {
+    if !store.is_symlink() || is_link_of_sweep(store, &[CASES_FOLDER], SOLVES_FOLDER) {
+        return Ok(());
+    }
+    Err(ArtifactError::foreign_link(store))
+}
+
+/// Whether a link leads from below one of the folders `from` of a sweep up and to its folder `to`, to what has the
+/// name of the link.
+fn is_link_of_sweep(link: &Path, from: &[&str], to: &str) -> bool {
+    let (Ok(target), Some(name)) = (fs::read_link(link), link.file_name()) else { return false };
+    let up = target.components().take_while(|part| *part == Component::ParentDir).count();
+    let mut down = target.components().skip(up);
+    let folder = link.parent().unwrap_or(Path::new(""));
+    let folder = if folder == Path::new("") { Path::new(".") } else { folder };
+    let Ok(folder) = fs::canonicalize(folder) else { return false };
+    // The folder that lies directly in that of the sweep.
+    let outermost = up.checked_sub(1).and_then(|up| folder.ancestors().nth(up)?.file_name());
+    outermost.is_some_and(|outermost| from.iter().any(|from| outermost == *from))
+        && down.next() == Some(Component::Normal(to.as_ref()))
+        && target.file_name() == Some(name)
+        && target.components().skip(up).all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// Names of the files that a manifest lists, and of itself; that of the stage, if one is given, whether intact or of
+/// another version.
+fn listed_by_manifest(
+    folder: &Path,
+    stage: Option<&str>,
+) -> Result<BTreeSet<OsString>, String> {
+    #[derive(Deserialize)]
+    struct Listed {
+        schema: String,
+        stage: String,
+        outputs: Vec<File>,
+    }
+    #[derive(Deserialize)]
+    struct File {
+        file: String,
+    }
+    let path = folder.join(Manifest::FILE);
+    if path.is_symlink() {
+        return Err("it is a link".into());
+    }
+    let bytes = fs::read(&path).map_err(|error| error.to_string())?;
+    let listed: Listed = serde_json::from_slice(&bytes).map_err(|error| error.to_string())?;
+    if listed.schema != Manifest::SCHEMA {
+        return Err(format!("it holds {}", listed.schema));
+    }
+    if let Some(stage) = stage.filter(|stage| *stage != listed.stage) {
+        return Err(format!("it is that of the stage {}, not of {stage}", listed.stage));
+    }
+    let names = listed.outputs.into_iter().map(|output| output.file.into());
+    Ok(names.chain([Manifest::FILE.into()]).collect())
+}
+
+/// Whether an entry of a folder is a plain file of a listed name.
+fn is_listed(entry: &Path, listed: &BTreeSet<OsString>) -> bool {
+    let plain = fs::symlink_metadata(entry).is_ok_and(|metadata| metadata.is_file());
+    plain && entry.file_name().is_some_and(|name| listed.contains(name))
+}
+
+/// A new folder for a result that is being written.
+pub(super) fn new_folder(run: &Path, stage: &str) -> Result<PathBuf, ArtifactError> {
+    let folder = empty_folder(run, &format!("{PREFIX}new-{stage}-"))?;
+    let journal = folder.join(JOURNAL);
+    fs::write(&journal, JOURNAL_HEAD).map_err(ArtifactError::io("write", &journal))?;
+    Ok(folder)
+}
+
+/// An empty folder, to which a result that is replaced is moved.
+pub(super) fn old_folder(run: &Path, stage: &str) -> Result<PathBuf, ArtifactError> {
+    empty_folder(run, &format!("{PREFIX}old-{stage}-"))
+}
+
+fn empty_folder(run: &Path, prefix: &str) -> Result<PathBuf, ArtifactError> {
+    let folder = tempfile::Builder::new()
+        .prefix(prefix)
+        // The usual permissions less the umask: results are for colleagues too.
+        .permissions(Permissions::from_mode(0o777))
+        .tempdir_in(run)
+        .map_err(ArtifactError::io("create a folder in", run))?;
+    Ok(folder.keep())
+}
+
+/// Notes that asperity is about to make a file in a folder of [`new_folder`].
+pub(super) fn note_in_journal(folder: &Path, file: &str) -> Result<(), ArtifactError> {
+    let path = folder.join(JOURNAL);
+    fs::File::options()
+        .append(true)
+        .open(&path)
+        .and_then(|mut journal| io::Write::write_all(&mut journal, format!("{file}\n").as_bytes()))
+        .map_err(ArtifactError::io("write", &path))
+}
+
+/// Removes the list, once the manifest says what is in the folder.
+pub(super) fn end_journal(folder: &Path) -> Result<(), ArtifactError> {
+    let path = folder.join(JOURNAL);
+    fs::remove_file(&path).map_err(ArtifactError::io("remove", &path))
+}
+
+/// Names in the list of a folder in which a result was being written; a kill may have come before its first line.
+fn listed_by_journal(folder: &Path) -> BTreeSet<OsString> {
+    let path = folder.join(JOURNAL);
+    if path.is_symlink() {
+        return BTreeSet::new();
+    }
+    let text = fs::read_to_string(&path);
+    match text.as_deref() {
+        Ok("") => [JOURNAL.into()].into(),
+        Ok(text) => match text.strip_prefix(JOURNAL_HEAD) {
+            Some(names) => names.lines().map(OsString::from).chain([JOURNAL.into()]).collect(),
+            None => BTreeSet::new(),
+        },
+        Err(_) => BTreeSet::new(),
+    }
+}
+
+/// Removes what asperity wrote in a temporary folder, and the folder if nothing else is in it.
+pub(super) fn clear(folder: &Path) -> Result<(), ArtifactError> {
+    let mut own = listed_by_journal(folder);
+    own.extend(listed_by_manifest(folder, None).unwrap_or_default());
+    let (lists, files): (Vec<PathBuf>, Vec<PathBuf>) = entries(folder)?
+        .into_iter()
+        .filter(|entry| is_listed(entry, &own))
+        .partition(|entry| [JOURNAL, Manifest::FILE].iter().any(|list| entry.ends_with(list)));
+    // The lists go last: a kill in between leaves what tells the rest.
+    for path in files.iter().chain(&lists) {
+        fs::remove_file(path).map_err(ArtifactError::io("remove", path))?;
+    }
+    match fs::remove_dir(folder) {
+        Err(error) if error.kind() != io::ErrorKind::DirectoryNotEmpty => {
+            Err(ArtifactError::io("remove", folder)(error))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Removes what killed runs left in a run folder; a result that was moved aside and not yet replaced is put back.
+/// Only with the lock: another process may be writing otherwise.
+pub(super) fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
+    for path in entries(run)? {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let Some(rest) = name.strip_prefix(PREFIX) else { continue };
+        let kind =
+            fs::symlink_metadata(&path).map_err(ArtifactError::io("read", &path))?.file_type();
+        if kind.is_dir() && rest.starts_with("new-") {
+            clear(&path)?;
+        } else if let Some(stage) = rest.strip_prefix("old-").filter(|_| kind.is_dir()) {
+            let stage = stage.rsplit_once('-').map_or(stage, |(stage, _)| stage);
+            put_back_or_clear(run, stage, &path)?;
+        } else if kind.is_file() && rest.starts_with(NOTE_FILE) && is_begun_note(&path)? {
+            fs::remove_file(&path).map_err(ArtifactError::io("remove", &path))?;
+        }
+    }
+    let solves = run.join(SOLVES_FOLDER);
+    // A linked store is that of a sweep, where others write.
+    if solves.is_symlink() { Ok(()) } else { clear_solves(&solves) }
+}
+
+fn put_back_or_clear(run: &Path, stage: &str, aside: &Path) -> Result<(), ArtifactError> {
+    let listed = listed_by_manifest(aside, Some(stage)).unwrap_or_default();
+    let whole = !listed.is_empty() && entries(aside)?.iter().all(|entry| is_listed(entry, &listed));
+    let place = run.join(stage);
+    let free = !place.exists() && !place.is_symlink();
+    if whole && free {
+        return fs::rename(aside, &place).map_err(ArtifactError::io("rename", aside));
+    }
+    clear(aside)
+}
+
+/// Whether a temporary file is a note of the last run that was being written.
+fn is_begun_note(path: &Path) -> Result<bool, ArtifactError> {
+    let bytes = fs::read(path).map_err(ArtifactError::io("read", path))?;
+    Ok(bytes.starts_with(NOTE_HEAD.as_bytes()) || NOTE_HEAD.as_bytes().starts_with(&bytes))
+}
+
+fn clear_solves(store: &Path) -> Result<(), ArtifactError> {
+    if !store.is_dir() {
+        return Ok(());
+    }
+    for folder in entries(store)?.into_iter().filter(|path| path.is_dir() && !path.is_symlink()) {
+        for path in entries(&folder)? {
+            let plain = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_file());
+            if plain && path.file_name().is_some_and(is_temporary_of_solve) {
+                fs::remove_file(&path).map_err(ArtifactError::io("remove", &path))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a name is that of a temporary file of a solve: 64 hexadecimal digits are in it.
+fn is_temporary_of_solve(name: &OsStr) -> bool {
+    let name = name.to_string_lossy();
+    let key = name.strip_prefix(PREFIX).and_then(|rest| rest.split_once('.'));
+    key.is_some_and(|(key, _)| key.parse::<super::Digest>().is_ok())
+}
+
+/// A temporary file beside the place that it is renamed to, with the usual permissions.
+///
+/// # Errors
+/// Those of the operating system.
+pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+    let name = path.file_name().unwrap_or_default();
+    let mut prefix = OsString::from(PREFIX);
+    if name.len() <= LONGEST_NAME {
+        prefix.push(name);
+        prefix.push("-");
+    }
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    tempfile::Builder::new()
+        .prefix(&prefix)
+        .permissions(Permissions::from_mode(0o666))
+        .tempfile_in(folder)
+}
+
+/// Entries of a folder, sorted.
+fn entries(path: &Path) -> Result<Vec<PathBuf>, ArtifactError> {
+    let mut entries: Vec<PathBuf> = fs::read_dir(path)
+        .and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect())
+        .map_err(ArtifactError::io("read", path))?;
+    entries.sort();
+    Ok(entries)
+}
+
+/// Entries of the folder of a stage that its manifest does not list; none where there is no manifest.
+///
+/// # Errors
+/// [`ArtifactError::Io`].
+pub(super) fn unlisted(folder: &Path) -> Result<Vec<PathBuf>, ArtifactError> {
+    let Ok(listed) = listed_by_manifest(folder, None) else { return Ok(Vec::new()) };
+    Ok(entries(folder)?.into_iter().filter(|entry| !is_listed(entry, &listed)).collect())
+}
