@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, Permissions};
 use std::io;
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
@@ -40,6 +40,9 @@ const JOURNAL_HEAD: &str =
 /// Names that are longer leave no room for a temporary one, 255 bytes at most.
 const LONGEST_NAME: usize = 200;
 
+/// Looks at a place to which other processes move results.
+const MOST_LOOKS: u32 = 100;
+
 /// What is at the place of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
@@ -57,21 +60,38 @@ pub(super) enum Place {
 /// [`ArtifactError::Foreign`] names what asperity did not write, or a manifest that cannot be read.
 pub(super) fn place(run: &Path, stage: &str) -> Result<Place, ArtifactError> {
     let path = run.join(stage);
-    let kind = match fs::symlink_metadata(&path) {
+    for _ in 1..MOST_LOOKS {
+        let before = identity(&path);
+        let found = look(&path, stage);
+        // Other processes may have put another result there meanwhile (see `RunFolder::share`).
+        if found.is_ok() || identity(&path) == before {
+            return found;
+        }
+    }
+    look(&path, stage)
+}
+
+/// What tells a file, folder or link from another of the same name.
+fn identity(path: &Path) -> Option<(u64, u64)> {
+    fs::symlink_metadata(path).ok().map(|metadata| (metadata.dev(), metadata.ino()))
+}
+
+fn look(path: &Path, stage: &str) -> Result<Place, ArtifactError> {
+    let kind = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free),
-        read => read.map_err(ArtifactError::io("read", &path))?.file_type(),
+        read => read.map_err(ArtifactError::io("read", path))?.file_type(),
     };
     if kind.is_symlink() {
-        let own = is_link_of_sweep(&path, &[CASES_FOLDER, SURFACES_FOLDER], SURFACES_FOLDER);
-        return if own { Ok(Place::Link) } else { Err(ArtifactError::foreign_link(&path)) };
+        let own = is_link_of_sweep(path, &[CASES_FOLDER, SURFACES_FOLDER], SURFACES_FOLDER);
+        return if own { Ok(Place::Link) } else { Err(ArtifactError::foreign_link(path)) };
     }
     if !kind.is_dir() {
-        return Err(in_the_way(&path, &path));
+        return Err(in_the_way(path, path));
     }
-    let entries = entries(&path)?;
+    let entries = entries(path)?;
     let Some(first) = entries.first() else { return Ok(Place::Free) };
     let manifest = path.join(Manifest::FILE);
-    let listed = match listed_by_manifest(&path, Some(stage)) {
+    let listed = match listed_by_manifest(path, Some(stage)) {
         Ok(listed) => listed,
         Err(_) if !manifest.exists() => return Err(ArtifactError::Foreign {
             path: first.clone(),
@@ -92,7 +112,7 @@ pub(super) fn place(run: &Path, stage: &str) -> Result<Place, ArtifactError> {
         }
     };
     match entries.iter().find(|entry| !is_listed(entry, &listed)) {
-        Some(foreign) => Err(in_the_way(foreign, &path)),
+        Some(foreign) => Err(in_the_way(foreign, path)),
         None => Ok(Place::Result),
     }
 }
@@ -100,7 +120,10 @@ pub(super) fn place(run: &Path, stage: &str) -> Result<Place, ArtifactError> {
 fn in_the_way(path: &Path, folder: &Path) -> ArtifactError {
     ArtifactError::Foreign {
         path: path.to_owned(),
-        what: format!("was not written by asperity, which would have to replace {}", folder.display()),
+        what: format!(
+            "was not written by asperity, which would have to replace {}",
+            folder.display()
+        ),
         remedy: "move it away, or choose another --out".into(),
     }
 }
@@ -143,10 +166,7 @@ fn is_link_of_sweep(link: &Path, from: &[&str], to: &str) -> bool {
 
 /// Names of the files that a manifest lists, and of itself; that of the stage, if one is given, whether intact or of
 /// another version.
-fn listed_by_manifest(
-    folder: &Path,
-    stage: Option<&str>,
-) -> Result<BTreeSet<OsString>, String> {
+fn listed_by_manifest(folder: &Path, stage: Option<&str>) -> Result<BTreeSet<OsString>, String> {
     #[derive(Deserialize)]
     struct Listed {
         schema: String,

@@ -12,7 +12,9 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{note, print, refuse_existing, write_file};
 use super::run_folder;
-use crate::artifact::{ArtifactError, RunView, csv_bytes, data_frame as data_frame_of, parquet_bytes};
+use crate::artifact::{
+    ArtifactError, RunView, csv_bytes, data_frame as data_frame_of, parquet_bytes,
+};
 use crate::report::{
     About, FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
     markdown, workbook,
@@ -243,9 +245,8 @@ impl Export {
                 std::fs::create_dir_all(folder).map_err(|error| {
                     CliError::failure(format!("cannot create {}: {error}", folder.display()))
                 })?;
-                let path = |table: &FrictionTable| {
-                    folder.join(table.file_stem()).with_extension("csv")
-                };
+                let path =
+                    |table: &FrictionTable| folder.join(table.file_stem()).with_extension("csv");
                 for table in tables {
                     refuse_existing(Some(&path(table)), self.force)?;
                 }

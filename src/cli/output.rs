@@ -102,7 +102,9 @@ pub(super) fn write_file(
 /// [`CliError::Input`].
 pub(super) fn refuse_existing(path: Option<&Path>, overwrite: bool) -> Result<(), CliError> {
     match path {
-        Some(path) if !overwrite && (path.is_file() || path.is_symlink() && !path.exists()) => Err(already_exists(path)),
+        Some(path) if !overwrite && (path.is_file() || path.is_symlink() && !path.exists()) => {
+            Err(already_exists(path))
+        }
         _ => Ok(()),
     }
 }

@@ -7,12 +7,12 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use super::interrupt::Interrupt;
+use super::last_run::LastRun;
 use super::output::{json, note, print};
 use super::progress::{Bar, Progress};
 use super::recipe_options::{RecipeOptions, TakeOver};
 use super::sweep::{claim_sweep, note_recipes, tell};
 use super::{CliError, values};
-use super::last_run::LastRun;
 use crate::artifact::{Manifest, RunFolder, RunView};
 use crate::pipeline::{Event, PipelineError, Ready, Selection};
 use crate::recipe::Recipe;
@@ -104,32 +104,33 @@ impl Run {
         let folder = RunFolder::open(&out).map_err(PipelineError::from)?;
         // From the beginning: also a run that is stopped has made the folder its own.
         last_run.write(&out, self.folder.take_over)?;
-        ready.run(&folder, interrupt.flag(), &|event| match event {
-            Event::Started(stage) => progress.start(stage),
-            Event::Progress(_, done, total) => progress.advance(done, total),
-            Event::Finished(stage, manifest) => {
-                progress.finish();
-                note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
-                if stage == Stage::Ingest {
-                    cleaned(quiet, &out);
+        ready
+            .run(&folder, interrupt.flag(), &|event| match event {
+                Event::Started(stage) => progress.start(stage),
+                Event::Progress(_, done, total) => progress.advance(done, total),
+                Event::Finished(stage, manifest) => {
+                    progress.finish();
+                    note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
+                    if stage == Stage::Ingest {
+                        cleaned(quiet, &out);
+                    }
+                    warn(quiet, manifest);
+                    let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
+                    record(StageSummary { stage, computed: true, seconds, warnings });
                 }
-                warn(quiet, manifest);
-                let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
-                record(StageSummary { stage, computed: true, seconds, warnings });
-            }
-            Event::Fresh(stage, manifest) => {
-                note(quiet, format_args!("{stage:<13} up to date"));
-                warn(quiet, manifest);
-                let warnings = manifest.warnings.clone();
-                record(StageSummary { stage, computed: false, seconds: None, warnings });
-            }
-        })
-        .inspect_err(|error| {
-            progress.finish();
-            if error.is_interrupt() {
-                note(quiet, "what is done is kept: the same command continues");
-            }
-        })?;
+                Event::Fresh(stage, manifest) => {
+                    note(quiet, format_args!("{stage:<13} up to date"));
+                    warn(quiet, manifest);
+                    let warnings = manifest.warnings.clone();
+                    record(StageSummary { stage, computed: false, seconds: None, warnings });
+                }
+            })
+            .inspect_err(|error| {
+                progress.finish();
+                if error.is_interrupt() {
+                    note(quiet, "what is done is kept: the same command continues");
+                }
+            })?;
         if self.json {
             let stages = summaries.into_inner().unwrap_or_default();
             return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);

@@ -128,7 +128,10 @@ fn stage(view: &RunView, name: String) -> Result<Finding, CliError> {
     }
     let unlisted = view.unlisted(&name).map_err(CliError::failure)?;
     damaged.extend(unlisted.iter().map(|path| {
-        format!("{}: its manifest does not list it, so asperity did not write it: move it away", path.display())
+        format!(
+            "{}: its manifest does not list it, so asperity did not write it: move it away",
+            path.display()
+        )
     }));
     damaged.extend(manifest.inputs.iter().filter_map(|input| wrong_input(view, &name, input)));
     Ok(Finding { name, files: manifest.outputs.len() + 1, damaged })

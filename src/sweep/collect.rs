@@ -7,8 +7,8 @@ use super::slurm::shell_word;
 use super::table::{FRICTION_FILE, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
-    ArtifactError, Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore, TOOL_VERSION,
-    write_by_rename,
+    ArtifactError, Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore,
+    TOOL_VERSION, write_by_rename,
 };
 use crate::pipeline::{self, Event, Selection};
 use crate::recipe::{Case, Recipe};

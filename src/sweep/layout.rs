@@ -9,8 +9,9 @@
 //!   sweep/friction.arrow      the tables of all cases
 //! ```
 
+use super::prepare::SURFACE_STAGES;
 use super::{STAGE, SweepError};
-use crate::artifact::{ArtifactError, RunView, SOLVES_FOLDER};
+use crate::artifact::{ArtifactError, Manifest, RunView, SOLVES_FOLDER};
 pub use crate::artifact::{CASES_FOLDER, SURFACES_FOLDER};
 use crate::pipeline;
 use crate::recipe::Case;
@@ -91,9 +92,16 @@ impl Layout {
             self.check_links(&folder)?;
         }
         for case in cases {
-            for folder in [self.surfaces(case), self.case(case)] {
+            let stages = pipeline::stages(&case.recipe)?;
+            for (folder, stages) in
+                [(self.surfaces(case), &SURFACE_STAGES[..]), (self.case(case), &stages)]
+            {
                 self.check_links(&folder)?;
-                pipeline::check_places(&folder, Stage::CHAIN)?;
+                let view = RunView::of(folder);
+                view.check_solves()?;
+                // Another result is looked at when it must give way.
+                let none = |stage: &&Stage| !view.file(stage.name(), Manifest::FILE).exists();
+                stages.iter().filter(none).try_for_each(|stage| view.check_place(stage.name()))?;
             }
             super::collect::check_recipe(&self.case(case))?;
         }

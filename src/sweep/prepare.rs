@@ -36,7 +36,7 @@ pub struct Prepared {
 type Scans = BTreeMap<Option<String>, Vec<ScanFile>>;
 
 /// Stages of the surfaces, which cases have in common.
-const SURFACE_STAGES: [Stage; 4] =
+pub(super) const SURFACE_STAGES: [Stage; 4] =
     [Stage::Ingest, Stage::Characterise, Stage::Approximate, Stage::Realise];
 
 impl Prepared {

@@ -114,11 +114,7 @@ fn damage_is_found_and_named() {
     let damaged = within(folder.path(), "verify out");
     assert_eq!(damaged.code, 1);
     assert!(damaged.stdout.contains("curves.arrow"), "{}", damaged.stdout);
-    assert!(
-        damaged.stderr.contains("2 faults in out"),
-        "{}",
-        damaged.stderr
-    );
+    assert!(damaged.stderr.contains("2 faults in out"), "{}", damaged.stderr);
     // A run makes both anew.
     within(folder.path(), "run recipe.toml --out out").result();
     within(folder.path(), "verify out").result();

@@ -240,7 +240,10 @@ fn all_stays(campaign: &Campaign, before: Before, things: &[(PathBuf, Kind)]) ->
         if command.starts_with("sweep plan") {
             plan = done.stdout.trim().to_owned();
         }
-        assert!(planted.iter().all(|path| content(path).is_some()), "gone after {command}: {planted:?}");
+        assert!(
+            planted.iter().all(|path| content(path).is_some()),
+            "gone after {command}: {planted:?}"
+        );
         assert_eq!(watched(), expected, "{command}: {}", done.stderr);
         assert!((0..=2).contains(&done.code), "{command}: {} {}", done.code, done.stderr);
         if command.starts_with("run recipe.toml --out case/out") {
@@ -254,13 +257,10 @@ fn all_stays(campaign: &Campaign, before: Before, things: &[(PathBuf, Kind)]) ->
 #[test]
 fn whatever_a_user_keeps_in_a_run_folder_stays() {
     let cases = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
-    let config = Config { cases: cases.unwrap_or(8), failure_persistence: None, ..Config::default() };
+    let config =
+        Config { cases: cases.unwrap_or(8), failure_persistence: None, ..Config::default() };
     let campaign = prepared();
-    let before = prop_oneof![
-        Just(Before::Nothing),
-        Just(Before::Run),
-        Just(Before::Sweep)
-    ];
+    let before = prop_oneof![Just(Before::Nothing), Just(Before::Run), Just(Before::Sweep)];
     let things = prop::collection::vec((places(), kinds()), 1..6);
     let codes = std::cell::RefCell::new([0, 0]);
     TestRunner::new(config)
@@ -324,7 +324,10 @@ fn a_forced_stage_replaces_its_own_solves_alone() {
     let modified = |path: &PathBuf| fs::metadata(path).unwrap().modified().unwrap();
     let times: Vec<_> = solves.keys().map(modified).collect();
     quietly(&campaign, "run recipe.toml --out out --force bem").result();
-    assert_eq!(tree(&campaign.path("out/solves")).keys().collect::<Vec<_>>(), before.keys().collect::<Vec<_>>());
+    assert_eq!(
+        tree(&campaign.path("out/solves")).keys().collect::<Vec<_>>(),
+        before.keys().collect::<Vec<_>>()
+    );
     assert!(solves.keys().map(modified).zip(times).all(|(now, before)| now > before));
     assert_eq!(store.get::<f64>(&key).unwrap(), Some(7.0));
     assert_eq!(campaign.read("out/solves/notes.txt"), "mine");
@@ -337,7 +340,8 @@ fn two_projects_have_two_run_folders_and_a_run_folder_has_one_recipe() {
     let campaign = Campaign::new();
     for project in ["a", "b"] {
         fs::create_dir_all(campaign.path(project).join("scans")).unwrap();
-        let recipe = campaign.read("recipe.toml").replace("seed = 1", &format!("seed = {}", project.len()));
+        let recipe =
+            campaign.read("recipe.toml").replace("seed = 1", &format!("seed = {}", project.len()));
         campaign.write(&format!("{project}/recipe.toml"), &recipe);
         campaign.write(&format!("{project}/rubber.toml"), &campaign.read("rubber.toml"));
         for scan in 0..2 {
@@ -385,7 +389,8 @@ fn an_export_needs_no_temporary_folder() {
 fn outputs_are_overwritten_if_that_is_asked_for_and_not_otherwise() {
     let campaign = finished();
     campaign.write("mine.csv", "mine");
-    let solve = "solve bem --wave 1:0.01 --speed 10 --modulus 3 --poisson 0.5 --points 64 --pressure 0.02";
+    let solve =
+        "solve bem --wave 1:0.01 --speed 10 --modulus 3 --poisson 0.5 --points 64 --pressure 0.02";
     for arguments in [
         "export out --format csv --to mine.csv".to_owned(),
         "export out --format markdown --to mine.csv".to_owned(),

@@ -13,12 +13,19 @@ fn two_runs() -> (Campaign, Campaign) {
     for scan in 0..3 {
         let name = format!("scans/track_{scan}.txt");
         // Other heights, not only another tilt.
-        let text: String = other
-            .read(&name)
-            .lines()
-            .enumerate()
-            .map(|(k, line)| if k % 7 == 3 { line.replace(".1", ".2") + "\n" } else { line.to_owned() + "\n" })
-            .collect();
+        let text: String =
+            other
+                .read(&name)
+                .lines()
+                .enumerate()
+                .map(|(k, line)| {
+                    if k % 7 == 3 {
+                        line.replace(".1", ".2") + "\n"
+                    } else {
+                        line.to_owned() + "\n"
+                    }
+                })
+                .collect();
         other.write(&name, &text);
     }
     quietly(&other, "run recipe.toml --out out").result();
@@ -69,7 +76,8 @@ fn stages_of_one_run_that_are_exchanged_are_named() {
     let campaign = finished();
     for (a, first) in STAGES.iter().enumerate() {
         for second in &STAGES[a + 1..] {
-            let (here, there) = (campaign.path("out").join(first), campaign.path("out").join(second));
+            let (here, there) =
+                (campaign.path("out").join(first), campaign.path("out").join(second));
             exchange(&here, &there);
             let said = faults(&campaign, first);
             for (stage, from) in [(first, second), (second, first)] {
@@ -92,7 +100,8 @@ fn files_besides_are_named_and_stop_a_run_that_would_replace_their_folder() {
         assert!(said.contains(&format!("{name}: its manifest does not list it")), "{said}");
         // Nothing is to be computed: nothing is in the way.
         quietly(&campaign, "run recipe.toml --out out").result();
-        let error = quietly(&campaign, &format!("run recipe.toml --out out --force {stage}")).error(2);
+        let error =
+            quietly(&campaign, &format!("run recipe.toml --out out --force {stage}")).error(2);
         assert!(error.contains(&name) && error.contains("move it away"), "{error}");
         assert_eq!(campaign.read(&name), "mine");
         fs::remove_file(campaign.path(&name)).unwrap();

@@ -68,7 +68,8 @@ impl SolveStore {
 
     /// Whether what is kept under that key counts.
     fn counts(&self, key: &Digest) -> bool {
-        let kept = self.anew.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        let kept =
+            self.anew.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
         kept.is_none_or(|kept| kept.contains(key))
     }
 
@@ -201,8 +202,7 @@ pub(crate) fn write_by_rename(path: &Path, bytes: &[u8]) -> Result<(), ArtifactE
         return Err(ArtifactError::foreign_link(folder));
     }
     fs::create_dir_all(folder).map_err(ArtifactError::io("create", folder))?;
-    let mut file =
-        temporary_beside(path).map_err(ArtifactError::io("create a file in", folder))?;
+    let mut file = temporary_beside(path).map_err(ArtifactError::io("create a file in", folder))?;
     file.write_all(bytes).map_err(ArtifactError::io("write", path))?;
     file.persist(path).map_err(|error| ArtifactError::io("rename to", path)(error.error))?;
     Ok(())
