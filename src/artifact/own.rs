@@ -77,8 +77,9 @@ fn identity(path: &Path) -> Option<(u64, u64)> {
 }
 
 fn look(path: &Path, stage: &str) -> Result<Place, ArtifactError> {
+    let absent = [io::ErrorKind::NotFound, io::ErrorKind::NotADirectory];
     let kind = match fs::symlink_metadata(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free),
+        Err(error) if absent.contains(&error.kind()) => return Ok(Place::Free),
         read => read.map_err(ArtifactError::io("read", path))?.file_type(),
     };
     if kind.is_symlink() {

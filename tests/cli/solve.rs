@@ -126,7 +126,10 @@ fn fields_add_up_to_the_result() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("fields.csv");
     fs::write(&path, "of another solve").unwrap();
-    let result = asperity_at(&format!("{TABLE_5_3} --json --fields {{}}"), &path).json();
+    let refused = asperity_at(&format!("{TABLE_5_3} --json --fields {{}}"), &path).error(2);
+    assert!(refused.contains("fields.csv exists already"), "{refused}");
+    assert_eq!(fs::read(&path).unwrap(), b"of another solve");
+    let result = asperity_at(&format!("{TABLE_5_3} --json --force --fields {{}}"), &path).json();
     let mut reader = csv::Reader::from_path(&path).unwrap();
     assert_eq!(
         reader.headers().unwrap(),

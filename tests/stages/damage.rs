@@ -1,7 +1,8 @@
 //! Run folders that something happened to.
 
-use super::{Campaign, STAGES, digests, recipe, run, stale};
-use asperity::artifact::{RunFolder, RunView};
+use super::{Campaign, STAGES, digests, recipe, run, stale, try_run};
+use asperity::artifact::{ArtifactError, RunFolder, RunView};
+use asperity::pipeline::{PipelineError, Selection};
 use asperity::stages::Stage;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,6 +49,10 @@ fn every_damaged_file_is_named_and_made_again() {
     }
 }
 
+/// What is left is not known as asperity's, which a run says in place of removing it.
+const KNOWN_NO_MORE: [&str; 4] =
+    ["no manifest", "half a manifest", "the manifest of another stage", "a file for a folder"];
+
 #[test]
 fn missing_and_foreign_files_and_manifests_are_made_again() {
     let campaign = Campaign::new();
@@ -80,6 +85,18 @@ fn missing_and_foreign_files_and_manifests_are_made_again() {
         happen();
         let found = stale(&recipe, &out);
         assert_eq!(found[0].0.name(), stage, "{accident}");
+        let place = in_out(stage);
+        if KNOWN_NO_MORE.contains(&accident) {
+            let refused = try_run(&recipe, &out, Selection::default()).unwrap_err();
+            assert!(matches!(refused, PipelineError::Artifact(ArtifactError::Foreign { .. })));
+            assert!(refused.to_string().contains(place.to_str().unwrap()), "{refused}");
+            if place.is_dir() {
+                fs::remove_dir_all(&place).unwrap();
+            } else {
+                assert_eq!(fs::read(&place).unwrap(), b"mine");
+                fs::remove_file(&place).unwrap();
+            }
+        }
         run(&recipe, &out);
         assert_eq!((digests(&out), stale(&recipe, &out)), (before.clone(), vec![]), "{accident}");
     }
@@ -100,6 +117,12 @@ fn status_survives_several_unreadable_manifests() {
     assert_eq!(reasons[1], "not computed yet");
     assert!(reasons[2].contains("bem/manifest.json is no readable manifest"));
     assert_eq!(reasons[3], "approximate is stale");
+    for stage in ["approximate", "bem"] {
+        let refused = try_run(&recipe, &out, Selection::default()).unwrap_err().to_string();
+        let advice = format!("{} is yours, delete that folder", out.join(stage).display());
+        assert!(refused.contains(&advice), "{refused}");
+        fs::remove_dir_all(out.join(stage)).unwrap();
+    }
     run(&recipe, &out);
     assert_eq!(stale(&recipe, &out), []);
 }
