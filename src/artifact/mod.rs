@@ -41,7 +41,7 @@ pub use error::ArtifactError;
 pub use frame::{csv_bytes, data_frame, parquet_bytes};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
 pub use own::{CASES_FOLDER, SURFACES_FOLDER};
-pub(crate) use own::{NOTE_FILE, NOTE_HEAD, temporary_beside};
+pub(crate) use own::{NOTE_FILE, NOTE_HEAD, temporary_beside, write_note};
 pub use schema::{ArraysSchema, AttributeSchema, DatasetSchema, arrays_schema};
 pub use schema::{check_or_write, table_schema};
 pub(crate) use solves::write_by_rename;

@@ -2,19 +2,18 @@
 //!
 //! - The folder of a stage is asperity's if it holds a manifest of that stage and no entry that the manifest does
 //!   not list.
-//! - A folder in which a result is being written, `.asperity-new-STAGE-x`, keeps a list ([`JOURNAL`]) of the files
-//!   that asperity makes in it, each noted before it is made. A kill leaves it behind; the next run removes what the
-//!   list names.
+//! - A folder in which something is being written, `.asperity-new-STAGE-x`, has a mark (a link, which comes into being
+//!   whole) and a list of the files that asperity makes in it, each noted before it is made. A kill leaves it behind;
+//!   the next run removes what the list names.
 //! - A replaced result waits in `.asperity-old-STAGE-x` to be removed, with its manifest to the last.
-//! - A temporary file has the name of the file that it becomes: a digest for stored solves, and for the note of the
-//!   last run also a content that begins as [`NOTE_HEAD`].
+//! - A temporary file of a stored solve has the digest in its name under which the solve is kept.
 //! - A link is a sweep's own if it leads from a case or a surface to `surfaces` or `solves` of the same sweep.
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, Permissions};
 use std::io;
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
@@ -28,15 +27,16 @@ pub const SURFACES_FOLDER: &str = "surfaces";
 pub const CASES_FOLDER: &str = "cases";
 /// The note of the last run, beside the folders of the stages.
 pub(crate) const NOTE_FILE: &str = "last_run.json";
-/// How the note of the last run begins.
+/// How the note of the last run begins, by which it is known as asperity's.
 pub(crate) const NOTE_HEAD: &str = "{\n  \"schema\": \"asperity.last_run\",\n";
 
 /// How the names of all that is temporary begin.
 const PREFIX: &str = ".asperity-";
-/// The list of files in a folder in which a result is being written.
-const JOURNAL: &str = ".asperity";
-const JOURNAL_HEAD: &str =
-    "asperity is writing a result here. If it is stopped, the next run removes these files:\n";
+/// The mark of a folder in which something is being written: a link with this text in place of a target.
+const MARK: &str = ".asperity";
+const MARK_TEXT: &str = "asperity is writing here, and removes what .asperity-files lists";
+/// The list of files in such a folder.
+const JOURNAL: &str = ".asperity-files";
 /// Names that are longer leave no room for a temporary one, 255 bytes at most.
 const LONGEST_NAME: usize = 200;
 
@@ -200,11 +200,13 @@ fn is_listed(entry: &Path, listed: &BTreeSet<OsString>) -> bool {
     plain && entry.file_name().is_some_and(|name| listed.contains(name))
 }
 
-/// A new folder for a result that is being written.
+/// A new folder for what is being written.
 pub(super) fn new_folder(run: &Path, stage: &str) -> Result<PathBuf, ArtifactError> {
     let folder = empty_folder(run, &format!("{PREFIX}new-{stage}-"))?;
+    // File systems without links lack the mark: there an empty list, left by a kill, is not known as asperity's.
+    let _ = symlink(MARK_TEXT, folder.join(MARK));
     let journal = folder.join(JOURNAL);
-    fs::write(&journal, JOURNAL_HEAD).map_err(ArtifactError::io("write", &journal))?;
+    fs::write(&journal, format!("{JOURNAL}\n")).map_err(ArtifactError::io("write", &journal))?;
     Ok(folder)
 }
 
@@ -233,41 +235,80 @@ pub(super) fn note_in_journal(folder: &Path, file: &str) -> Result<(), ArtifactE
         .map_err(ArtifactError::io("write", &path))
 }
 
-/// Removes the list, once the manifest says what is in the folder.
+/// Removes list and mark, once the manifest says what is in the folder.
 pub(super) fn end_journal(folder: &Path) -> Result<(), ArtifactError> {
     let path = folder.join(JOURNAL);
+    fs::remove_file(&path).map_err(ArtifactError::io("remove", &path))?;
+    remove_mark(folder)
+}
+
+/// Removes the mark, if it is there.
+fn remove_mark(folder: &Path) -> Result<(), ArtifactError> {
+    let path = folder.join(MARK);
+    if !is_marked(folder) {
+        return Ok(());
+    }
     fs::remove_file(&path).map_err(ArtifactError::io("remove", &path))
 }
 
-/// Names in the list of a folder in which a result was being written; a kill may have come before its first line.
+fn is_marked(folder: &Path) -> bool {
+    fs::read_link(folder.join(MARK)).is_ok_and(|text| text == Path::new(MARK_TEXT))
+}
+
+/// Names in the list of a folder in which something was being written; a kill may have come before its first line.
 fn listed_by_journal(folder: &Path) -> BTreeSet<OsString> {
     let path = folder.join(JOURNAL);
     if path.is_symlink() {
         return BTreeSet::new();
     }
-    let text = fs::read_to_string(&path);
-    match text.as_deref() {
-        Ok("") => [JOURNAL.into()].into(),
-        Ok(text) => match text.strip_prefix(JOURNAL_HEAD) {
-            Some(names) => names.lines().map(OsString::from).chain([JOURNAL.into()]).collect(),
-            None => BTreeSet::new(),
-        },
-        Err(_) => BTreeSet::new(),
+    match fs::read_to_string(&path).as_deref() {
+        Ok("") if is_marked(folder) => [JOURNAL.into()].into(),
+        Ok(text) if text.lines().next() == Some(JOURNAL) => {
+            text.lines().map(OsString::from).collect()
+        }
+        _ => BTreeSet::new(),
     }
+}
+
+/// Writes the note of the last run in a folder of its own and moves it into place, so that it is there whole or as it
+/// was.
+///
+/// # Errors
+/// [`ArtifactError::Io`].
+pub(crate) fn write_note(run: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
+    let folder = new_folder(run, "note")?;
+    let begun = folder.join(NOTE_FILE);
+    let write = || -> Result<(), ArtifactError> {
+        note_in_journal(&folder, NOTE_FILE)?;
+        fs::write(&begun, bytes).map_err(ArtifactError::io("write", &begun))?;
+        for path in [&begun, &folder] {
+            let file = fs::File::open(path).and_then(|file| file.sync_all());
+            file.map_err(ArtifactError::io("write", path))?;
+        }
+        let place = run.join(NOTE_FILE);
+        fs::rename(&begun, &place).map_err(ArtifactError::io("rename to", &place))?;
+        let synchronised = fs::File::open(run).and_then(|folder| folder.sync_all());
+        synchronised.map_err(ArtifactError::io("write", run))
+    };
+    let written = write();
+    let cleared = clear(&folder);
+    written.and(cleared)
 }
 
 /// Removes what asperity wrote in a temporary folder, and the folder if nothing else is in it.
 pub(super) fn clear(folder: &Path) -> Result<(), ArtifactError> {
     let mut own = listed_by_journal(folder);
     own.extend(listed_by_manifest(folder, None).unwrap_or_default());
+    let lists = [JOURNAL, Manifest::FILE];
     let (lists, files): (Vec<PathBuf>, Vec<PathBuf>) = entries(folder)?
         .into_iter()
         .filter(|entry| is_listed(entry, &own))
-        .partition(|entry| [JOURNAL, Manifest::FILE].iter().any(|list| entry.ends_with(list)));
+        .partition(|entry| lists.iter().any(|list| entry.ends_with(list)));
     // The lists go last: a kill in between leaves what tells the rest.
     for path in files.iter().chain(&lists) {
         fs::remove_file(path).map_err(ArtifactError::io("remove", path))?;
     }
+    remove_mark(folder)?;
     match fs::remove_dir(folder) {
         Err(error) if error.kind() != io::ErrorKind::DirectoryNotEmpty => {
             Err(ArtifactError::io("remove", folder)(error))
@@ -289,8 +330,6 @@ pub(super) fn clear_leftovers(run: &Path) -> Result<(), ArtifactError> {
         } else if let Some(stage) = rest.strip_prefix("old-").filter(|_| kind.is_dir()) {
             let stage = stage.rsplit_once('-').map_or(stage, |(stage, _)| stage);
             put_back_or_clear(run, stage, &path)?;
-        } else if kind.is_file() && rest.starts_with(NOTE_FILE) && is_begun_note(&path)? {
-            fs::remove_file(&path).map_err(ArtifactError::io("remove", &path))?;
         }
     }
     let solves = run.join(SOLVES_FOLDER);
@@ -307,12 +346,6 @@ fn put_back_or_clear(run: &Path, stage: &str, aside: &Path) -> Result<(), Artifa
         return fs::rename(aside, &place).map_err(ArtifactError::io("rename", aside));
     }
     clear(aside)
-}
-
-/// Whether a temporary file is a note of the last run that was being written.
-fn is_begun_note(path: &Path) -> Result<bool, ArtifactError> {
-    let bytes = fs::read(path).map_err(ArtifactError::io("read", path))?;
-    Ok(bytes.starts_with(NOTE_HEAD.as_bytes()) || NOTE_HEAD.as_bytes().starts_with(&bytes))
 }
 
 fn clear_solves(store: &Path) -> Result<(), ArtifactError> {

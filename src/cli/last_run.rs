@@ -7,9 +7,9 @@ use std::path::{Component, Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::CliError;
-use super::output::{json, write_file};
+use super::output::json;
 use super::recipe_options::{with_scans, with_tolerance};
-use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION};
+use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
 use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::report::html::Origin;
@@ -78,18 +78,7 @@ impl LastRun {
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn check(&self, out: &Path, take_over: bool) -> Result<(), CliError> {
-        let path = out.join(Self::FILE);
-        if !path.exists() && !path.is_symlink() {
-            return Ok(());
-        }
-        let bytes = std::fs::read(&path).unwrap_or_default();
-        let there = Self::whole(&bytes).ok();
-        if path.is_symlink() || there.is_none() && !bytes.starts_with(NOTE_HEAD.as_bytes()) {
-            return Err(CliError::input(format!(
-                "{} is not as asperity writes it, which would have to replace it: move it away, or choose another --out",
-                path.display()
-            )));
-        }
+        let there = Self::refuse_foreign(out)?;
         match there {
             Some(there) if !take_over && !there.is_of(&self.recipe, out) => {
                 Err(CliError::input(format!(
@@ -101,6 +90,27 @@ impl LastRun {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The note that is there, none if there is none that is whole; fails for a file in its place that asperity did
+    /// not write.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(super) fn refuse_foreign(out: &Path) -> Result<Option<Self>, CliError> {
+        let path = out.join(Self::FILE);
+        if !path.exists() && !path.is_symlink() {
+            return Ok(None);
+        }
+        let bytes = std::fs::read(&path).unwrap_or_default();
+        let there = Self::whole(&bytes).ok();
+        if path.is_symlink() || there.is_none() && !bytes.starts_with(NOTE_HEAD.as_bytes()) {
+            return Err(CliError::input(format!(
+                "{} is not as asperity writes it, which would have to replace it: move it away, or choose another --out",
+                path.display()
+            )));
+        }
+        Ok(there)
     }
 
     /// Whether the note in the folder `out` is of the recipe at that path.
@@ -126,7 +136,7 @@ impl LastRun {
         note.threads = Some(rayon::current_num_threads());
         note.digest = Digest::seal_of(&note).map_err(CliError::failure)?;
         let text = json(&note)?;
-        write_file(&out.join(Self::FILE), true, |out| out.write_all(text.as_bytes()))
+        write_note(out, text.as_bytes()).map_err(CliError::failure)
     }
 
     /// None where no run left one that is whole.

@@ -44,7 +44,9 @@ pub enum ForecastError {
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
     /// The temporary folder.
-    #[error("the folder for a trial run cannot be made: {0}")]
+    #[error(
+        "cannot make a temporary folder for a trial run: {0}; set TMPDIR to a folder that you may write to"
+    )]
     Folder(std::io::Error),
     /// The recipe.
     #[error(transparent)]

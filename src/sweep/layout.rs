@@ -88,6 +88,7 @@ impl Layout {
     pub fn check(&self, cases: &[Case]) -> Result<(), SweepError> {
         let view = RunView::of(&self.out);
         view.check_place(STAGE)?;
+        view.check_solves()?;
         for folder in [self.plans(), self.logs()] {
             self.check_links(&folder)?;
         }

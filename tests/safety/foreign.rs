@@ -42,7 +42,7 @@ const NAMES: [&str; 33] = [
     ".asperity",
     ".asperity-new-bem-AbCdEf",
     ".asperity-old-bem-AbCdEf",
-    ".asperity-last_run.json-AbCdEf",
+    ".asperity-new-note-AbCdEf",
     ".lock",
     "last_run.json",
     "recipe.toml",
@@ -66,8 +66,8 @@ const INNER: [&str; 16] = [
     "curves.arrow",
     "friction.arrow",
     ".asperity",
+    ".asperity-files",
     ".tmp-x",
-    ".asperity-new-bem-AbCdEf",
     "notes.txt",
 ];
 const CONTENTS: [&str; 5] = [
@@ -258,7 +258,7 @@ fn all_stays(campaign: &Campaign, before: Before, things: &[(PathBuf, Kind)]) ->
 fn whatever_a_user_keeps_in_a_run_folder_stays() {
     let cases = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
     let config =
-        Config { cases: cases.unwrap_or(8), failure_persistence: None, ..Config::default() };
+        Config { cases: cases.unwrap_or(6), failure_persistence: None, ..Config::default() };
     let campaign = prepared();
     let before = prop_oneof![Just(Before::Nothing), Just(Before::Run), Just(Before::Sweep)];
     let things = prop::collection::vec((places(), kinds()), 1..6);

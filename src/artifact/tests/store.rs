@@ -235,7 +235,7 @@ fn what_asperity_did_not_write_stays() {
         begun.with_file_name("mine"),
         folder.path().join(".tmp-bem-x"),
         folder.path().join(".old-bem"),
-        folder.path().join(".asperity-last_run.json-AbCdEf"),
+        folder.path().join(".asperity-new-bem-AbCdEf"),
         folder.path().join(".asperity-notes"),
         solves.join(".asperity-notes.json-AbCdEf"),
         solves.join(".tmp-x"),
@@ -243,15 +243,29 @@ fn what_asperity_did_not_write_stays() {
     for file in &foreign {
         fs::write(file, "mine").unwrap();
     }
-    let begun_note = folder.path().join(".asperity-last_run.json-GhIjKl");
-    fs::write(&begun_note, &super::super::own::NOTE_HEAD[..20]).unwrap();
+    // A kill before the list, within it and at its end.
+    let folders = ["none", "begun", "ended"].map(|kill| {
+        let path = folder.path().join(format!(".asperity-new-bem-{kill}"));
+        fs::create_dir(&path).unwrap();
+        path
+    });
+    for path in &folders[1..] {
+        let mark = "asperity is writing here, and removes what .asperity-files lists";
+        std::os::unix::fs::symlink(mark, path.join(".asperity")).unwrap();
+    }
+    fs::write(folders[1].join(".asperity-files"), "").unwrap();
+    // The same without the mark is not known.
+    let unknown = folder.path().join(".asperity-new-bem-unknown");
+    fs::create_dir(&unknown).unwrap();
+    fs::write(unknown.join(".asperity-files"), "").unwrap();
     RunFolder::open(folder.path()).unwrap();
     for file in &foreign {
         assert_eq!(fs::read(file).unwrap(), b"mine", "{}", file.display());
     }
     // Of asperity's own nothing is left.
     assert_eq!(entries(begun.parent().unwrap()), ["mine"]);
-    assert!(!half.exists() && !begun_note.exists());
+    assert!(!half.exists() && folders.iter().all(|folder| !folder.exists()));
+    assert!(unknown.join(".asperity-files").exists());
 }
 
 #[test]

@@ -95,7 +95,11 @@ pub(super) fn claim_sweep(
 ) -> Result<(), CliError> {
     last_run.check(out, take_over)?;
     let layout = Layout::new(out);
-    layout.check(&recipe.cases().map_err(CliError::input)?)?;
+    let cases = recipe.cases().map_err(CliError::input)?;
+    layout.check(&cases)?;
+    for case in &cases {
+        LastRun::refuse_foreign(&layout.case(case))?;
+    }
     std::fs::create_dir_all(out)
         .map_err(|error| CliError::failure(format!("cannot create {}: {error}", out.display())))?;
     last_run.write(out, take_over)
