@@ -206,7 +206,13 @@ pub(super) fn new_folder(run: &Path, stage: &str) -> Result<PathBuf, ArtifactErr
     // File systems without links lack the mark: there an empty list, left by a kill, is not known as asperity's.
     let _ = symlink(MARK_TEXT, folder.join(MARK));
     let journal = folder.join(JOURNAL);
-    fs::write(&journal, format!("{JOURNAL}\n")).map_err(ArtifactError::io("write", &journal))?;
+    fs::write(&journal, format!("{JOURNAL}\n")).map_err(|error| {
+        // On a full disk: nobody else has put anything there yet. What cannot be removed is left empty.
+        let _ = fs::remove_file(&journal);
+        let _ = remove_mark(&folder);
+        let _ = fs::remove_dir(&folder);
+        ArtifactError::io("write", &journal)(error)
+    })?;
     Ok(folder)
 }
 

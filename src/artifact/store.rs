@@ -351,8 +351,8 @@ impl Pending<'_> {
     /// or comes back with the next [`RunFolder::open`].
     pub fn commit(self, manifest: &Manifest) -> Result<(), ArtifactError> {
         let folder = &self.folder;
-        for entry in fs::read_dir(folder).map_err(ArtifactError::io("read", folder))? {
-            synchronise(&entry.map_err(ArtifactError::io("read", folder))?.path())?;
+        for output in &self.outputs {
+            synchronise(&folder.join(&output.file))?;
         }
         write_manifest(&self.path(Manifest::FILE)?, manifest)?;
         own::end_journal(folder)?;
