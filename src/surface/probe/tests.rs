@@ -105,7 +105,7 @@ fn traced_waves_are_as_they_were_from_the_cut_off_on_and_not_below() {
             let q = TAU * f64::from(n) / points as f64;
             (
                 q,
-                0.3e-6 * f64::from(n).powf(-1.3) * 30.0,
+                0.3e-6 * f64::from(n).powf(-1.3) * 300.0,
                 TAU * (0.618_034 * f64::from(n * n)).fract(),
             )
         })
