@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use hdf5::types::{FloatSize, TypeDescriptor, VarLenUnicode};
-use hdf5::{Dataset, File, FileBuilder, Group, Location};
+use hdf5::{Dataset, File, FileBuilder, Group, Location, LocationType};
 use serde::Serialize;
 
 use super::content::hash_text;
@@ -168,6 +168,7 @@ pub fn arrays_info(path: &Path) -> Result<ArraysInfo, ArtifactError> {
 }
 
 fn check_datasets(datasets: &[ArrayDataset]) -> Result<(), ArtifactError> {
+    let all: BTreeSet<&str> = datasets.iter().map(|dataset| dataset.name.as_str()).collect();
     let mut names = BTreeSet::new();
     for ArrayDataset { name, unit, attributes, .. } in datasets {
         let refuse = |reason: &str| {
@@ -180,7 +181,7 @@ fn check_datasets(datasets: &[ArrayDataset]) -> Result<(), ArtifactError> {
             return refuse("its name is used twice");
         }
         let above = name.match_indices('/').map(|(at, _)| &name[..at]);
-        if above.into_iter().any(|group| datasets.iter().any(|other| other.name == group)) {
+        if above.into_iter().any(|group| all.contains(group)) {
             return refuse("one of its groups is the name of a dataset");
         }
         if unit.is_empty() {
@@ -288,11 +289,19 @@ impl<'a> Reader<'a> {
     }
 
     fn collect(&self, group: &Group, into: &mut Vec<ArrayDataset>) -> Result<(), ArtifactError> {
-        for dataset in group.datasets().map_err(|error| self.unreadable(error))? {
-            into.push(self.dataset(&dataset)?);
-        }
-        for group in group.groups().map_err(|error| self.unreadable(error))? {
-            self.collect(&group, into)?;
+        let failed = |error| self.unreadable(error);
+        // Opened by their names: HDF5 looks through the whole file for the name of each object that
+        // was not, which takes the square of the number of datasets.
+        for name in group.member_names().map_err(failed)? {
+            match group.loc_type_by_name(&name).map_err(failed)? {
+                LocationType::Dataset => {
+                    into.push(self.dataset(&group.dataset(&name).map_err(failed)?)?);
+                }
+                LocationType::Group => {
+                    self.collect(&group.group(&name).map_err(failed)?, into)?;
+                }
+                _ => {}
+            }
         }
         Ok(())
     }

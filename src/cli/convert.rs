@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::CliError;
-use super::inspect::ScanOptions;
+use super::inspect::{ScanOptions, read_instrument};
 use super::output::{print, write_file};
-use crate::scans::file::{Grid, ScanFile, read_file, write_sdf, write_x3p};
+use crate::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
 use crate::scans::read_text;
 use crate::surface::RawScan;
 
@@ -40,6 +40,9 @@ pub(super) struct Convert {
     /// Overwrite the new file if it is there.
     #[arg(long)]
     force: bool,
+    /// Channel of an ERD file that is read, by its number from 1; the first of heights if not given.
+    #[arg(long, value_name = "N", value_parser = super::values::channel)]
+    erd_channel: Option<usize>,
     #[command(flatten)]
     scan: ScanOptions,
 }
@@ -72,7 +75,7 @@ impl Convert {
             let problem = "is a folder; give the file of one scan";
             return Err(CliError::input(format!("{} {problem}", self.file.display())));
         }
-        let native = read_file(&self.file).map_err(CliError::input)?;
+        let native = read_instrument(&self.file, self.erd_channel)?;
         if native.is_some() {
             let what = "the file of an instrument, which states its units";
             self.scan.refuse(&self.file, what)?;

@@ -38,6 +38,14 @@ pub(super) fn count<T: FromStr>(text: &str) -> Result<T, String> {
     }
 }
 
+/// The number of a channel, of which the first is 1.
+pub(super) fn channel(text: &str) -> Result<usize, String> {
+    match count(text)? {
+        0 => Err("0 is no channel; the first is 1".into()),
+        number => Ok(number),
+    }
+}
+
 /// A share above 0 and below 1.
 pub(super) fn fraction(text: &str) -> Result<f64, String> {
     match finite(text)? {

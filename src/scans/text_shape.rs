@@ -12,6 +12,7 @@ use crate::scans::TextFormat;
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator, default_missing};
 use crate::scans::thousands::thousands_mark;
 use csv::ReaderBuilder;
+pub use missing::{RepeatedHeight, repeated_inside};
 use std::fmt::Write;
 
 /// Lines by which separator, decimal mark and columns are found; more say nothing new.
@@ -39,7 +40,8 @@ pub struct TextShape {
     /// Lines of points.
     pub rows: usize,
     /// Cells that seem to mark a missing height, beyond those that do without being listed: words,
-    /// and numbers that repeat at the end of the range and far from all other heights.
+    /// numbers that repeat at the end of the range and far from all other heights, and numbers within
+    /// the range that repeat much more often than all others.
     pub missing: Vec<String>,
     /// Lines before the points that state a unit, as they stand.
     pub stated: Vec<String>,
@@ -227,7 +229,8 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-fn unit_name(unit: LengthUnit) -> &'static str {
+/// A unit as the recipe writes it.
+pub fn unit_name(unit: LengthUnit) -> &'static str {
     match unit {
         LengthUnit::Nm => "nm",
         LengthUnit::Um => "um",
@@ -452,7 +455,10 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
     let heights = || points.iter().filter_map(|line| layout.cells(line).into_iter().nth(z));
     let is_word = |cell: &String| layout.number(cell).is_none_or(f64::is_nan);
     let mut missing = missing::words(heights().filter(is_word));
-    missing.extend(missing::numbers(&numbers).into_iter().map(missing::mark_text));
+    let far = missing::numbers(&numbers);
+    let inside = repeated_inside(&numbers).into_iter().map(|mark| mark.height);
+    let inside: Vec<f64> = inside.filter(|mark| !far.contains(mark)).collect();
+    missing.extend(far.into_iter().chain(inside).map(missing::mark_text));
     let mut cells = points.iter().take(MOST_LINES).flat_map(|line| layout.cells(line));
     let thousands = cells.find(|cell| thousands_mark(cell, layout.mark).is_some());
     TextShape { missing, thousands, ..shape }

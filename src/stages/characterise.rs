@@ -19,9 +19,10 @@ use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
 use crate::surface::LineScan;
-use crate::surface::correlation::{HeightDifferenceCorrelation, Probe, correlate_scans};
+use crate::surface::correlation::{HeightDifferenceCorrelation, correlate_scans};
 use crate::surface::filter::ProfileFilter;
 use crate::surface::parameters::{AverageRoughness, ParameterError, RoughnessParameters};
+use crate::surface::probe::Probe;
 use crate::surface::profile::ProfileStandard;
 use crate::surface::self_affine::{ConfidenceInterval, LagRange, SelfAffineFit, fit_self_affine};
 use crate::surface::spectrum::{PowerSpectrum, Window, power_spectra};
@@ -30,7 +31,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 5;
+pub const REVISION: u32 = 6;
 
 /// Section `[characterise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -49,8 +50,8 @@ pub struct Characterise {
     /// reliable. Not known by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spot_diameter_um: Option<f64>,
-    /// Radius of the tip of a stylus in micrometres; where the surface is more sharply curved than
-    /// half the tip, its waves are not reliable. Not known by default.
+    /// Radius of the tip of a stylus in micrometres; waves are not reliable at scales at which the
+    /// sharpest peak has more than half the curvature of the tip. Not known by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tip_radius_um: Option<f64>,
     /// Shortest wavelength in millimetres of the Hurst exponent of the spectrum; the shortest
@@ -365,7 +366,7 @@ pub fn run(
         .zip(correlations.iter().chain([&average]))
         .flat_map(|(name, c)| correlation_rows(name, c, parameters.lags_per_decade))
         .collect();
-    let reliable = parameters.probe().shortest_reliable_wavelength(&average);
+    let reliable = parameters.probe().shortest_reliable_wavelength(&windows);
     let cut_off = (RELIABLE_KEY.to_owned(), (reliable * 1e3).to_string());
     let window_length = (WINDOW_LENGTH_KEY.to_owned(), shortest_window_mm(&windows));
     let metadata = Metadata::from([window_length, cut_off.clone()]);

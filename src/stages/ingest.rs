@@ -16,7 +16,7 @@ use crate::artifact::{
     Row, RunView, SchemaVersion, Storage,
 };
 use crate::recipe::{Violation, demand};
-use crate::scans::file::{Grid, MapLines, parse_file};
+use crate::scans::file::{CHANNELS, Family, Grid, MapLines, parse_channel};
 use crate::scans::text_shape::TextShape;
 use crate::scans::{TextFormat, admit_size, parse_text, read_bytes};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
@@ -52,6 +52,9 @@ pub struct Ingest {
     /// Every how many lines of a height map one is taken; 1 takes all.
     #[serde(default = "every_line", skip_serializing_if = "is_every_line")]
     pub map_line_step: usize,
+    /// Channel of ERD files that is taken, by its number from 1; the first of heights if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub erd_channel: Option<usize>,
     /// Largest number of scans that get a picture of their faults beside `cleaning.md`; those whose
     /// shortest waves the faults make most of come first.
     #[serde(default = "twelve_pictures", skip_serializing_if = "is_twelve")]
@@ -65,6 +68,9 @@ impl Ingest {
     pub(crate) fn check(&self) -> Result<(), Violation> {
         self.text.as_ref().map_or(Ok(()), TextFormat::validate)?;
         demand(self.map_line_step > 0, "ingest.map_line_step", self.map_line_step, "1 or more")?;
+        let channel = self.erd_channel;
+        let shown = channel.unwrap_or_default();
+        demand(channel != Some(0), "ingest.erd_channel", shown, "1 or more, the first is 1")?;
         Ok(self.conditioning.validate()?)
     }
 }
@@ -295,6 +301,19 @@ struct ReadFile<T> {
     is_text: bool,
     /// Where the description contradicts the file.
     contradictions: Vec<String>,
+    /// The channels of heights of an ERD file that has several.
+    channels: Option<String>,
+    /// Whether it is an ERD file.
+    is_erd: bool,
+    /// A height that seems to stand for missing ones, in words.
+    repeated: Option<String>,
+}
+
+impl<T> ReadFile<T> {
+    fn with<U>(self, scans: Vec<U>) -> ReadFile<U> {
+        let Self { is_text, contradictions, channels, is_erd, repeated, .. } = self;
+        ReadFile { scans, is_text, contradictions, channels, is_erd, repeated }
+    }
 }
 
 /// Reads and conditions the scan files and writes the results; returns warnings.
@@ -317,14 +336,15 @@ pub fn run(
             if Digest::of_bytes(&bytes) != file.digest {
                 return Err(StageError::ScanChanged { path: file.path.clone() });
             }
-            let ReadFile { scans, is_text, contradictions } = read_scans(ingest, file, &bytes)?;
-            let scans = scans
+            let read = read_scans(ingest, file, &bytes)?;
+            let scans = read
+                .scans
                 .iter()
                 .map(|scan| condition(scan, &ingest.conditioning))
                 .collect::<Result<Vec<_>, _>>()?;
             let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             (context.watch.progress)(count, files.len() as u64);
-            Ok(ReadFile { scans, is_text, contradictions })
+            Ok(read.with(scans))
         })
         .collect();
     let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
@@ -366,7 +386,7 @@ fn read_scans(
     /// Enough for the names of the columns and some points.
     const START: usize = 1 << 16;
     let name = file.path.display().to_string();
-    if let Some(scan) = parse_file(&name, bytes).map_err(Box::new)? {
+    if let Some(scan) = parse_channel(&name, bytes, ingest.erd_channel).map_err(Box::new)? {
         let lines = match (scan.grid, ingest.map_lines) {
             (_, Some(lines)) => lines,
             (Grid::Profile { .. }, None) => MapLines::Rows,
@@ -379,7 +399,15 @@ fn read_scans(
             let heights = scans.iter_mut().flat_map(|scan| &mut scan.heights);
             heights.for_each(|height| *height = -*height);
         }
-        return Ok(ReadFile { scans, is_text: false, contradictions: Vec::new() });
+        let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
+        return Ok(ReadFile {
+            repeated: scans.iter().find_map(|scan| warnings::repeated(scan, None)),
+            scans,
+            is_text: false,
+            contradictions: Vec::new(),
+            channels: said(CHANNELS).map(|(_, channels)| channels.clone()),
+            is_erd: Family::detect(bytes) == Some(Family::Erd),
+        });
     }
     let Some(format) = &ingest.text else {
         return Err(StageError::NoTextFormat { path: file.path.clone() });
@@ -388,7 +416,14 @@ fn read_scans(
     scan.name.clone_from(&file.name);
     let shape = TextShape::of(&bytes[..bytes.len().min(START)]);
     let contradictions = shape.map(|shape| shape.contradictions(format)).unwrap_or_default();
-    Ok(ReadFile { scans: vec![scan], is_text: true, contradictions })
+    Ok(ReadFile {
+        repeated: warnings::repeated(&scan, Some(format)),
+        scans: vec![scan],
+        is_text: true,
+        contradictions,
+        channels: None,
+        is_erd: false,
+    })
 }
 
 fn check_equal_grids<'a>(

@@ -9,10 +9,6 @@
 //! gaps need no filling and all lags cost five real FFTs. Without gaps, running sums of squares and
 //! two FFTs do.
 
-mod reliability;
-
-pub use reliability::{Probe, WAVELENGTHS_PER_SPOT};
-
 use super::LineScan;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex, num_complex::Complex};

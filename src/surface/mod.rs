@@ -7,6 +7,7 @@ pub mod filter;
 pub mod form;
 pub mod ladder;
 pub mod parameters;
+pub mod probe;
 pub mod profile;
 pub mod realisation;
 pub mod resample;

@@ -10,9 +10,10 @@
 
 use super::correlation::{
     CorrelationError, CorrelationSample, HeightDifferenceCorrelation, check_equal_spacing,
-    log_spaced_lags, pooled_value,
+    log_spaced_lags,
 };
 use crate::numerics::statistics::jackknife_95;
+use rayon::prelude::*;
 use thiserror::Error;
 
 /// Fewest lags on the slope, and in all: two would meet any slope exactly.
@@ -134,12 +135,18 @@ pub fn fit_self_affine(
         per_decade: 20,
     });
     let lags = lags_within(range, longest, first.spacing);
-    let fit = |left_out| Hinge::fit(&pooled(scans, &lags, left_out), range);
-    let points = pooled(scans, &lags, None);
+    let sums = PooledSums::of(scans, &lags);
+    let points = sums.samples();
     let hinge = Hinge::fit(&points, range)?;
     let intervals = match scans.len() {
         0..3 => None,
-        count => Some(jackknife(&(0..count).map(|i| fit(Some(i))).collect::<Result<Vec<_>, _>>()?)),
+        _ => {
+            let fits =
+                scans.par_iter().map(|scan| Hinge::fit(&sums.without(scan).samples(), range));
+            // Collected first: a parallel search for an error finds any.
+            let fits: Vec<Result<Hinge, SelfAffineError>> = fits.collect();
+            Some(jackknife(&fits.into_iter().collect::<Result<Vec<_>, _>>()?))
+        }
     };
     let around = |which: usize, centre: f64, map: fn(f64) -> f64| {
         let half = intervals?[which];
@@ -175,19 +182,58 @@ fn lags_within(range: LagRange, longest: usize, spacing: f64) -> Vec<usize> {
     log_spaced_lags(longest, range.per_decade).into_iter().filter(within).collect()
 }
 
-/// The average correlation at some lags, of all scans or all but one.
-fn pooled(
-    scans: &[HeightDifferenceCorrelation],
-    lags: &[usize],
-    left_out: Option<usize>,
-) -> Vec<CorrelationSample> {
-    let kept = || scans.iter().enumerate().filter(|(i, _)| Some(*i) != left_out).map(|(_, s)| s);
-    let at = |&lag: &usize| CorrelationSample {
-        lag: lag as f64 * scans[0].spacing,
-        value: pooled_value(kept(), lag),
-        pairs: kept().map(|scan| scan.pairs[lag]).sum(),
-    };
-    lags.iter().map(at).filter(|sample| sample.pairs > 0).collect()
+/// Sums over the pairs of all scans at some lags. A scan is left out by subtraction, so that the
+/// jackknife of n scans costs n times what one fit does, and not n² sums.
+struct PooledSums<'a> {
+    lags: &'a [usize],
+    spacing: f64,
+    /// Sum of the squared differences of the pairs at each lag in m².
+    squares: Vec<f64>,
+    pairs: Vec<u64>,
+}
+
+impl<'a> PooledSums<'a> {
+    fn of(scans: &[HeightDifferenceCorrelation], lags: &'a [usize]) -> Self {
+        let squares = |&lag: &usize| scans.iter().map(|scan| sum_of_squares(scan, lag)).sum();
+        let pairs = |&lag: &usize| scans.iter().map(|scan| scan.pairs[lag]).sum();
+        Self {
+            lags,
+            spacing: scans[0].spacing,
+            squares: lags.iter().map(squares).collect(),
+            pairs: lags.iter().map(pairs).collect(),
+        }
+    }
+
+    /// The sums of all scans but one of them. A sum of n positive terms loses `n 1e-16` of the
+    /// remaining ones where they are of a size; a correlation that is decided by the scan that is
+    /// left out loses more.
+    fn without(&self, scan: &HeightDifferenceCorrelation) -> Self {
+        let squares = |(&lag, sum): (&usize, &f64)| sum - sum_of_squares(scan, lag);
+        let pairs = |(&lag, sum): (&usize, &u64)| sum - scan.pairs[lag];
+        Self {
+            squares: self.lags.iter().zip(&self.squares).map(squares).collect(),
+            pairs: self.lags.iter().zip(&self.pairs).map(pairs).collect(),
+            ..*self
+        }
+    }
+
+    /// The average correlation at the lags that have pairs.
+    fn samples(&self) -> Vec<CorrelationSample> {
+        let sums = self.squares.iter().zip(&self.pairs);
+        let at = |(&lag, (sum, &pairs)): (&usize, (&f64, &u64))| CorrelationSample {
+            lag: lag as f64 * self.spacing,
+            value: sum / pairs as f64,
+            pairs,
+        };
+        self.lags.iter().zip(sums).map(at).filter(|sample| sample.pairs > 0).collect()
+    }
+}
+
+fn sum_of_squares(scan: &HeightDifferenceCorrelation, lag: usize) -> f64 {
+    match scan.pairs[lag] {
+        0 => 0.0,
+        pairs => pairs as f64 * scan.values[lag],
+    }
 }
 
 /// Half widths of the 95 % intervals from the estimates without one scan each.

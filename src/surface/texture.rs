@@ -3,6 +3,14 @@
 use super::form::{Form, remove_form};
 use super::spectrum::PowerSpectrum;
 use std::f64::consts::{PI, SQRT_2, TAU};
+use thiserror::Error;
+
+/// Largest sampling interval in metres of a profile whose mean profile depth ISO 13473-1 defines.
+pub const LARGEST_DEPTH_SPACING: f64 = 1e-3;
+/// Fitted spacings of one millimetre may be off by this share.
+const SPACING_ROUND_OFF: f64 = 1e-3;
+/// Fewest points of a segment, two for each half.
+const FEWEST_SEGMENT_POINTS: usize = 4;
 
 /// What ISO 13473-1 leaves open or fixes by a number; the default is its usual choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,27 +53,78 @@ pub struct SegmentDepth {
     pub depth: Option<f64>,
 }
 
+/// A profile without mean profile depths.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DepthError {
+    /// Sampled too coarsely: this is a profile for evenness, with no texture in it.
+    #[error(
+        "its points are {:.4} mm apart and ISO 13473-1 asks for at most 1 mm: a profile for evenness \
+         does not hold the texture; measure with a finer spacing, or lower \
+         ingest.conditioning.lateral_resolution_um",
+        spacing * 1e3
+    )]
+    Spacing {
+        /// Distance between neighbouring points in metres.
+        spacing: f64,
+    },
+    /// The low-pass filter has no effect.
+    #[error(
+        "the low-pass filter of {:.4} mm needs points less than half of that apart, they are {:.4} mm \
+         apart; raise characterise.profile_depth.low_pass_mm, 2.4 mm in ISO 13473-1",
+        low_pass * 1e3, spacing * 1e3
+    )]
+    LowPass {
+        /// Cut-off in metres.
+        low_pass: f64,
+        /// Distance between neighbouring points in metres.
+        spacing: f64,
+    },
+    /// A segment of a few points has no peaks in its halves.
+    #[error(
+        "a segment of {:.1} mm has {points} of at least {FEWEST_SEGMENT_POINTS} points; raise \
+         characterise.profile_depth.segment_mm, 100 mm in ISO 13473-1",
+        segment * 1e3
+    )]
+    FewPoints {
+        /// Length in metres of a segment.
+        segment: f64,
+        /// Its number of points.
+        points: usize,
+    },
+    /// Shorter than a segment.
+    #[error(
+        "its {:.1} mm are shorter than a segment (characterise.profile_depth.segment_mm = {})",
+        length * 1e3, segment * 1e3
+    )]
+    Short {
+        /// Length in metres of the profile.
+        length: f64,
+        /// Length in metres of a segment.
+        segment: f64,
+    },
+    /// Nothing but gaps.
+    #[error("none of its points has a height that is not a spike; leave the scan out")]
+    NoHeights,
+}
+
 /// Mean profile depths of the whole segments of equidistant heights (metres, NaN where
 /// missing), as ISO 13473-1 has it: spikes, too steep to their neighbours on the left and the
 /// right, become drop-outs; drop-outs are interpolated linearly; a Butterworth low-pass of second
 /// order, forwards and backwards; a high-pass likewise, or the line of each segment taken off.
+///
+/// # Errors
+/// [`DepthError`]: points more than 1 mm apart or too far apart for the low-pass, a profile shorter
+/// than a segment or without heights.
 pub fn mean_profile_depths(
     heights: &[f64],
     spacing: f64,
     options: &DepthOptions,
-) -> Vec<SegmentDepth> {
-    // A segment of a whole number of points must not lose one to round-off.
-    let points = (options.segment / spacing * (1.0 + 1e-9)).floor() as usize;
-    if points < 4 || heights.len() < points {
-        return Vec::new();
-    }
+) -> Result<Vec<SegmentDepth>, DepthError> {
+    let points = segment_points(heights, spacing, options)?;
     let mut valid = heights.to_vec();
     drop_spikes(&mut valid, options.spike_slope * spacing);
-    let Some(mut smooth) = interpolated(&valid) else { return Vec::new() };
-    // Without a point per half cut-off there is nothing above it to take away.
-    if options.low_pass > 2.0 * spacing {
-        smooth = both_ways(&smooth, &Butterworth::low_pass(spacing / options.low_pass));
-    }
+    let mut smooth = interpolated(&valid).ok_or(DepthError::NoHeights)?;
+    smooth = both_ways(&smooth, &Butterworth::low_pass(spacing / options.low_pass));
     if let Some(cut_off) = options.high_pass {
         smooth = both_ways(&smooth, &Butterworth::high_pass(spacing / cut_off));
     }
@@ -79,7 +138,31 @@ pub fn mean_profile_depths(
         let form = if options.high_pass.is_some() { Form::Mean } else { Form::Slope };
         SegmentDepth { start, interpolated, depth: judged.then(|| segment_depth(segment, form)) }
     };
-    segments.enumerate().map(depth).collect()
+    Ok(segments.enumerate().map(depth).collect())
+}
+
+/// Points of a segment, where the profile has what the standard asks for.
+fn segment_points(
+    heights: &[f64],
+    spacing: f64,
+    options: &DepthOptions,
+) -> Result<usize, DepthError> {
+    let DepthOptions { segment, low_pass, .. } = *options;
+    if spacing > LARGEST_DEPTH_SPACING * (1.0 + SPACING_ROUND_OFF) {
+        return Err(DepthError::Spacing { spacing });
+    }
+    if low_pass <= 2.0 * spacing {
+        return Err(DepthError::LowPass { low_pass, spacing });
+    }
+    // A segment of a whole number of points must not lose one to round-off.
+    let points = (segment / spacing * (1.0 + 1e-9)).floor() as usize;
+    if points < FEWEST_SEGMENT_POINTS {
+        return Err(DepthError::FewPoints { segment, points });
+    }
+    if heights.len() < points {
+        return Err(DepthError::Short { length: heights.len() as f64 * spacing, segment });
+    }
+    Ok(points)
 }
 
 fn segment_depth(segment: &[f64], form: Form) -> f64 {

@@ -254,3 +254,31 @@ fn damaged_files_are_an_answer_or_a_clear_error() {
         }
     }
 }
+
+/// Two wheel paths, of which the right is twice the left.
+const ROAD: &str = "ERDFILEV2.00\n 2, 3, -1, 1, 5, 0.0250, -1,\nSHORTNAMLElev.  RElev.  \nUNITSNAMmm      mm      \n\
+                    XUNITS  m\nEND\n1.0 2.0\n2.0 4.0\n3.0 6.0\n";
+
+#[test]
+fn a_channel_of_an_erd_file_is_chosen_by_its_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let (road, csv) = (folder.path().join("road.erd"), folder.path().join("right.csv"));
+    fs::write(&road, ROAD).unwrap();
+    let mean = |options: &str| {
+        let found = asperity_at(&format!("inspect {{}} --json {options}"), &road).json();
+        assert_eq!(found["instrument"]["channels of heights"], "1 LElev., 2 RElev.");
+        found["mean_m"].as_f64().unwrap()
+    };
+    assert_eq!((mean(""), mean("--erd-channel 1")), (2e-3, 2e-3));
+    assert_eq!(mean("--erd-channel 2"), 4e-3);
+    asperity_at(&format!("convert {{}} --erd-channel 2 --to {}", csv.display()), &road).result();
+    assert!(fs::read_to_string(&csv).unwrap().contains(",6e-3\n"));
+    let refused = asperity_at("inspect {} --erd-channel 3", &road).error(2);
+    assert!(refused.contains("1 LElev., 2 RElev."), "{refused}");
+    assert!(asperity_at("inspect {} --erd-channel 0", &road).error(2).contains("the first is 1"));
+    let other = asperity_at("inspect {} --erd-channel 2", &csv).error(2);
+    assert!(other.contains("is no ERD file"), "{other}");
+    let to = folder.path().join("again.sdf");
+    let convert = format!("convert {{}} --erd-channel 2 --to {}", to.display());
+    assert!(asperity_at(&convert, &csv).error(2).contains("is no ERD file"));
+}

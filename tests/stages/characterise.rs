@@ -60,15 +60,23 @@ fn cut_offs_and_sections_that_do_not_fit_leave_rows_out_with_a_warning() {
         assert_eq!(table::<ProfileRow>(&campaign, PROFILE_FILE), []);
         assert_eq!(table::<ParametersRow>(&campaign, PARAMETERS_FILE).len(), 3);
     }
-    for key in ["lambda_c_mm", "section_length_mm"] {
-        let (campaign, warnings) = with(&format!("{key} = 80.0"));
-        let value = format!("characterise.{key} = 80 is longer than the window track_0");
+    let (campaign, warnings) = with("lambda_c_mm = 80.0");
+    assert_told(&warnings, &["half a cut-off at each end", "8.0000 mm", "gaussian_regression"]);
+    assert_eq!(table::<ProfileRow>(&campaign, PROFILE_FILE), []);
+    for (key, keys) in [
+        ("lambda_c_mm", "lambda_c_mm = 80.0\nprofile_filter = \"gaussian_regression\""),
+        ("section_length_mm", "section_length_mm = 80.0"),
+    ] {
+        let (campaign, warnings) = with(keys);
+        let value = format!(
+            "characterise.{key} = 80 is longer than what is evaluated of the window track_0"
+        );
         assert_told(&warnings, &[&value, "one section"]);
         let rows = table::<ProfileRow>(&campaign, PROFILE_FILE);
         assert!(rows.len() == 3 && rows.iter().all(|row| row.sections == 1), "{rows:?}");
     }
     // What fits, and a section of the whole window, are no reason for a word.
-    let (_, warnings) = with("lambda_s_mm = 0.1\nlambda_c_mm = 0.8\nsection_length_mm = 8.0");
+    let (_, warnings) = with("lambda_s_mm = 0.1\nlambda_c_mm = 0.8\nsection_length_mm = 7.2");
     assert_eq!(warnings, usual());
 }
 

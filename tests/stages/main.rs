@@ -14,6 +14,7 @@ mod golden;
 mod hybrid;
 mod instrument_files;
 mod interruption;
+mod metrology;
 mod reliability;
 mod scans;
 mod schemas;

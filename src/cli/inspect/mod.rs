@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::CliError;
 use super::output::{json, print};
-use crate::scans::file::{Family, Grid, read_file};
+use crate::scans::file::{Family, Grid, ScanFile, read_channel};
 use crate::scans::text_shape::TextShape as Shape;
 use artifact::{Arrays, Table};
 use folder::{ManifestFile, Run, Stage};
@@ -50,6 +50,9 @@ pub(super) struct Inspect {
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
+    /// Channel of an ERD file that is read, by its number from 1; the first of heights if not given.
+    #[arg(long, value_name = "N", value_parser = super::values::channel)]
+    erd_channel: Option<usize>,
     #[command(flatten)]
     scan: ScanOptions,
 }
@@ -83,11 +86,13 @@ impl Inspect {
         let path = &self.path;
         if path.is_dir() {
             self.scan.refuse(path, "a folder")?;
+            refuse_channel(path, self.erd_channel, None)?;
             return folder::read(path);
         }
         let start = first_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         let format = Format::of(&start);
+        refuse_channel(path, self.erd_channel, Family::detect(&start))?;
         if let Some(what) = format.not_text() {
             self.scan.refuse(path, what)?;
         }
@@ -96,7 +101,7 @@ impl Inspect {
             Format::Hdf5 => Finding::Arrays(Arrays::read(path)?),
             Format::Json if Solve::is_in(path) => Finding::Solve(Solve::read(path)?),
             Format::Json => Finding::Manifest(ManifestFile::read(path)?),
-            Format::Instrument => instrument_file(path)?,
+            Format::Instrument => instrument_file(path, self.erd_channel)?,
             Format::Text => self.text_scan(path)?,
             Format::Binary if self.scan.are_given() || is_utf_16(&start) => self.text_scan(path)?,
             Format::Empty => return Err(foreign(path, "is empty")),
@@ -118,9 +123,34 @@ impl Inspect {
     }
 }
 
+/// Refuses a channel for what is no ERD file.
+fn refuse_channel(
+    path: &Path,
+    channel: Option<usize>,
+    family: Option<Family>,
+) -> Result<(), CliError> {
+    if channel.is_none() || family == Some(Family::Erd) {
+        return Ok(());
+    }
+    Err(foreign(path, "is no ERD file, of which --erd-channel takes one channel: leave it out"))
+}
+
+/// Reads a file of an instrument, of an ERD file a chosen channel; `None` if it is none.
+pub(super) fn read_instrument(
+    path: &Path,
+    channel: Option<usize>,
+) -> Result<Option<ScanFile>, CliError> {
+    if channel.is_some() {
+        let start = first_bytes(path)
+            .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
+        refuse_channel(path, channel, Family::detect(&start))?;
+    }
+    read_channel(path, channel).map_err(CliError::input)
+}
+
 /// Reads the instrument file at `path`.
-fn instrument_file(path: &Path) -> Result<Finding, CliError> {
-    let scan = read_file(path).map_err(CliError::input)?;
+fn instrument_file(path: &Path, channel: Option<usize>) -> Result<Finding, CliError> {
+    let scan = read_instrument(path, channel)?;
     // The first bytes have told the family, and the file is read again.
     let scan = scan.ok_or_else(|| foreign(path, "changes while it is read"))?;
     let file = InstrumentFile::of(path, &scan);

@@ -9,8 +9,12 @@ use super::bytes::count;
 use super::error::{FileProblem, Place, unexpected};
 use super::{Grid, ScanFile, metres_of, spacing};
 
-/// Reads an ERD file; its first channel of a length is the profile.
-pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
+/// Name of what [`ScanFile::instrument`] says of the channels of a file that has several of heights.
+pub const CHANNELS: &str = "channels of heights";
+
+/// Reads an ERD file. The profile is the channel asked for, by its number from 1, else the first of a
+/// length.
+pub(super) fn read(bytes: &[u8], chosen: Option<usize>) -> Result<ScanFile, FileProblem> {
     let (text, _) = encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes);
     let lines: Vec<&str> = text.lines().collect();
     let layout = Layout::read(lines.get(1).copied().unwrap_or_default())?;
@@ -26,25 +30,33 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
     })?;
     let spacing = spacing(Place::Line(2), layout.step * x_metres)?;
     let (place, units) = keywords.find("UNITSNAM").unwrap_or((2, String::new()));
-    let channel = |number| columns_of_eight(&units, number);
-    let (profile, metres) = (0..layout.channels)
-        .find_map(|number| Some((number, metres_of(&channel(number))?)))
-        .ok_or_else(|| {
-            unexpected(
-                Place::Line(place),
-                "the units (UNITSNAM)",
-                &units,
-                "a length, such as mm or in",
-            )
-        })?;
+    let profiles = profiles(&units, layout.channels);
+    let names = keywords.find("SHORTNAM").map(|(_, names)| names).unwrap_or_default();
+    let (profile, metres) = choose(&profiles, chosen).ok_or_else(|| match chosen {
+        Some(number) => unexpected(
+            Place::Line(place),
+            "the channel asked for",
+            number,
+            format!("a channel of heights: {}", listed(&profiles, &names)),
+        ),
+        None => unexpected(
+            Place::Line(place),
+            "the units (UNITSNAM)",
+            &units,
+            "a length, such as mm or in",
+        ),
+    })?;
     let heights = layout.heights(&lines, end + 1, profile, metres)?;
     let mut instrument: Vec<(String, String)> =
         [("TITLE", "title"), ("DATE", "created"), ("INSTRUMT", "model")]
             .into_iter()
             .filter_map(|(key, name)| Some((name.to_owned(), keywords.find(key)?.1)))
             .collect();
-    if let Some((_, names)) = keywords.find("SHORTNAM") {
+    if !names.is_empty() {
         instrument.push(("channel".into(), columns_of_eight(&names, profile)));
+    }
+    if profiles.len() > 1 {
+        instrument.push((CHANNELS.into(), listed(&profiles, &names)));
     }
     Ok(ScanFile {
         format: "ERD".into(),
@@ -58,6 +70,28 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
         heights,
         instrument,
     })
+}
+
+/// The channels that hold lengths: their places from 0, and metres of their units.
+fn profiles(units: &str, channels: usize) -> Vec<(usize, f64)> {
+    let unit = |place| Some((place, metres_of(&columns_of_eight(units, place))?));
+    (0..channels).filter_map(unit).collect()
+}
+
+/// The channel asked for, by its number from 1, or the first.
+fn choose(profiles: &[(usize, f64)], chosen: Option<usize>) -> Option<(usize, f64)> {
+    match chosen {
+        Some(number) => profiles.iter().find(|(place, _)| place + 1 == number).copied(),
+        None => profiles.first().copied(),
+    }
+}
+
+/// The channels that hold lengths by number and name: `1 LElev., 2 RElev.`.
+fn listed(profiles: &[(usize, f64)], names: &str) -> String {
+    let of = |(place, _): &(usize, f64)| {
+        format!("{} {}", place + 1, columns_of_eight(names, *place)).trim_end().to_owned()
+    };
+    profiles.iter().map(of).collect::<Vec<_>>().join(", ")
 }
 
 struct Layout {

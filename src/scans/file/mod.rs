@@ -22,6 +22,7 @@ mod sdf_write;
 mod tests;
 mod x3p;
 
+pub use erd::CHANNELS;
 pub use error::{FileError, FileProblem, Place};
 pub use sdf_write::write as write_sdf;
 pub use x3p::write as write_x3p;
@@ -205,9 +206,17 @@ fn spacing(place: Place, metres: f64) -> Result<f64, FileProblem> {
 /// # Errors
 /// [`FileError`] with the path, the place and what was expected there.
 pub fn read_file(path: &Path) -> Result<Option<ScanFile>, FileError> {
+    read_channel(path, None)
+}
+
+/// Like [`read_file`], with the number from 1 of the channel that is read of an ERD file.
+///
+/// # Errors
+/// [`FileError`]; also for a channel that the file does not have, or that holds no heights.
+pub fn read_channel(path: &Path, channel: Option<usize>) -> Result<Option<ScanFile>, FileError> {
     let bytes = super::read_bytes(path)
         .map_err(|error| FileError { file: path.display().to_string(), problem: error.into() })?;
-    parse_file("", &bytes).map_err(|error| error.in_file(path))
+    parse_channel("", &bytes, channel).map_err(|error| error.in_file(path))
 }
 
 /// Reads the bytes of an instrument file; `None` if they are of none of the families.
@@ -215,12 +224,24 @@ pub fn read_file(path: &Path) -> Result<Option<ScanFile>, FileError> {
 /// # Errors
 /// [`FileError`] that tells of the file as `name`.
 pub fn parse_file(name: &str, bytes: &[u8]) -> Result<Option<ScanFile>, FileError> {
+    parse_channel(name, bytes, None)
+}
+
+/// Like [`parse_file`], with the number from 1 of the channel that is read of an ERD file.
+///
+/// # Errors
+/// [`FileError`]; also for a channel that the file does not have, or that holds no heights.
+pub fn parse_channel(
+    name: &str,
+    bytes: &[u8],
+    channel: Option<usize>,
+) -> Result<Option<ScanFile>, FileError> {
     let Some(family) = Family::detect(bytes) else { return Ok(None) };
     let read = match family {
         Family::Sdf => sdf::read(bytes),
         Family::X3p => x3p::read(bytes),
         Family::DigitalSurf => digital_surf::read(bytes),
-        Family::Erd => erd::read(bytes),
+        Family::Erd => erd::read(bytes, channel),
         Family::Gwyddion => gwyddion::read(bytes),
     };
     read.and_then(ScanFile::checked)

@@ -51,6 +51,54 @@ pub(super) fn numbers(heights: &[f64]) -> Vec<f64> {
     marks
 }
 
+/// A height that is written in place of missing ones, inside the range of all others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RepeatedHeight {
+    /// The height, in the unit of the others.
+    pub height: f64,
+    /// How often it is there.
+    pub count: usize,
+    /// How often any height that is no mark is there at most.
+    pub others: usize,
+}
+
+/// Heights between the smallest and the largest that are there much more often than any other: six
+/// times and more, five times as often as the most frequent of the others, in three places and more.
+/// Laser sensors write 0 where no light came back. A clipped height is at the end of the range, a
+/// plate or a stylus at rest makes one run of equal heights, and coarse steps repeat all heights.
+pub fn repeated_inside(heights: &[f64]) -> Vec<RepeatedHeight> {
+    const FEWEST: usize = 6;
+    const TIMES_OTHERS: usize = 5;
+    const FEWEST_RUNS: usize = 3;
+    /// Points out of range and points without light may have a number each.
+    const MOST_MARKS: usize = 4;
+    // Adding 0 makes -0 the same as 0.
+    let mut sorted: Vec<f64> = heights.iter().filter(|z| z.is_finite()).map(|z| z + 0.0).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(&lowest), Some(&highest)) = (sorted.first(), sorted.last()) else {
+        return Vec::new();
+    };
+    let mut counts: Vec<(usize, f64)> =
+        sorted.chunk_by(|a, b| a == b).map(|equal| (equal.len(), equal[0])).collect();
+    counts.sort_by(|a, b| b.0.cmp(&a.0));
+    let ends_at = |&marks: &usize| {
+        let others = counts.get(marks).map_or(0, |next| next.0);
+        others > 0 && counts[marks - 1].0 >= FEWEST.max(TIMES_OTHERS * others)
+    };
+    let Some(marks) = (1..=MOST_MARKS.min(counts.len())).find(ends_at) else { return Vec::new() };
+    let others = counts[marks].0;
+    let runs = |height: f64| {
+        let starts = |pair: &&[f64]| pair[0] != height && pair[1] == height;
+        heights.windows(2).filter(starts).count() + usize::from(heights[0] == height)
+    };
+    let found =
+        counts[..marks].iter().map(|&(count, height)| RepeatedHeight { height, count, others });
+    found
+        .filter(|mark| lowest < mark.height && mark.height < highest)
+        .filter(|mark| runs(mark.height) >= FEWEST_RUNS)
+        .collect()
+}
+
 /// A mark as a cell; the reader compares by value.
 pub(super) fn mark_text(mark: f64) -> String {
     if mark.abs() < 1e15 { mark.to_string() } else { format!("{mark:e}") }

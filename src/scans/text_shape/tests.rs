@@ -102,6 +102,75 @@ fn marks_of_missing_heights_are_proposed() {
     }
 }
 
+/// Heights of four digits of which every thirtieth is `mark`.
+fn with_marks(mark: &str, points: usize) -> String {
+    // Odd in the last digit, so that none is by chance the mark.
+    let odd = |z: f64| f64::from(2 * (5000.0 * z).round() as i32 + 1) / 1e4;
+    let height = |i: usize| match i % 30 {
+        7 => mark.to_owned(),
+        _ => format!("{:.4}", odd(0.9 * (0.37 * i as f64).sin() + 0.05 * (2.3 * i as f64).cos())),
+    };
+    let line = |i: usize| format!("{:.3},{}\n", i as f64 * 0.05, height(i));
+    String::from("X [mm],Z [mm]\n") + &(0..points).map(line).collect::<String>()
+}
+
+#[test]
+fn a_height_within_the_range_that_repeats_is_proposed_as_a_mark() {
+    for (mark, cell) in [("0.0000", "0"), ("-0.0000", "0"), ("0", "0"), ("0.1250", "0.125")] {
+        let found = shape(with_marks(mark, 900).as_bytes());
+        assert_eq!(found.missing, [cell], "{mark}");
+        let text = with_marks(mark, 900);
+        let scan = parse_text("a", text.as_bytes(), &description(&found)).unwrap();
+        assert_eq!(scan.heights.iter().filter(|z| z.is_nan()).count(), 30, "{mark}");
+    }
+}
+
+#[test]
+fn heights_that_repeat_for_other_reasons_are_no_marks() {
+    let none = |heights: Vec<f64>| assert_eq!(repeated_inside(&heights), []);
+    let wave = |i: usize| 0.9 * (0.37 * (i + 1) as f64).sin();
+    // Clipped at both ends of the range.
+    none((0..900).map(|i| wave(i).clamp(-0.5, 0.5)).collect());
+    // A plate of one height, once and twice.
+    none((0..900).map(|i| if (100..200).contains(&i) { 0.0 } else { wave(i) }).collect());
+    none((0..900).map(|i| if i < 50 || i > 800 { 0.0 } else { wave(i) }).collect());
+    // Steps of an instrument: all heights repeat, those at the crests more often.
+    none((0..9000).map(|i| (wave(i) * 50.0).round() / 50.0).collect());
+    // Five points are no pattern, and all the same height is another fault.
+    none((0..150).map(|i| if i % 30 == 7 { 0.0 } else { wave(i) }).collect());
+    none(vec![0.0; 100]);
+    none(vec![]);
+    none(vec![f64::NAN; 10]);
+}
+
+#[test]
+fn two_marks_within_the_range_are_both_found() {
+    let wave = |i: usize| 0.9 * (0.37 * (i + 1) as f64).sin();
+    let height = |i: usize| match i % 40 {
+        3 | 11 | 19 => 0.0,
+        30 => -0.25,
+        _ => wave(i),
+    };
+    let found = repeated_inside(&(0..800).map(height).collect::<Vec<_>>());
+    let found: Vec<(f64, usize)> = found.iter().map(|mark| (mark.height, mark.count)).collect();
+    assert_eq!(found, [(0.0, 60), (-0.25, 20)]);
+}
+
+/// The zeros of `../shared/cases/06_zero_means_no_return`, with the figures of its `case.md`.
+#[test]
+fn the_zeros_of_a_laser_line_are_proposed() {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared"));
+    let Ok(bytes) = std::fs::read(folder.join("cases/06_zero_means_no_return/scan.csv")) else {
+        println!("skipped: {}/cases/06_zero_means_no_return is not there", folder.display());
+        return;
+    };
+    let found = shape(&bytes);
+    assert_eq!(found.missing, ["0"]);
+    let scan = parse_text("a", &bytes, &description(&found)).unwrap();
+    assert_eq!(scan.heights.len(), 800);
+    assert_eq!(scan.heights.iter().filter(|z| z.is_nan()).count(), 23);
+}
+
 #[test]
 fn two_lines_of_names_and_heights_alone() {
     for text in ["x;z\nmm;um\n0,0;1\n0,5;2\n1,0;1\n", "x (mm);z (um)\na;a\n0,0;1\n0,5;2\n1,0;1\n"] {

@@ -4,13 +4,14 @@ use super::warnings::left_out;
 use super::{AVERAGE, Characterise, demand_ascending};
 use crate::artifact::Row;
 use crate::recipe::{Violation, demand};
-use crate::surface::filter::waviness;
+use crate::surface::filter::{ProfileFilter, waviness};
 use crate::surface::profile::{ProfileParameters, profile_parameters};
-use crate::surface::texture::{DepthOptions, mean_profile_depths, texture_bands};
+use crate::surface::texture::{DepthError, DepthOptions, mean_profile_depths, texture_bands};
 use crate::surface::{LineScan, PowerSpectrum};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Profile parameters of each window: `profile_parameters.arrow`.
 pub const PROFILE_FILE: &str = "profile_parameters.arrow";
@@ -199,16 +200,18 @@ pub(super) fn profile_rows(
     ];
     let longer = |(key, mm): (&str, Option<f64>)| {
         let mm = mm?;
+        let mm_of = |points: usize, window: &LineScan| points as f64 * window.spacing * 1e3;
         // A window cut to whole points is up to one spacing shorter than what was asked for.
-        let window = windows.iter().find(|w| mm >= length_mm(w) + w.spacing * 1e3)?;
+        let is_longer = |w: &&LineScan| mm >= mm_of(evaluated(parameters, w).len() + 1, w);
+        let window = windows.iter().find(is_longer).filter(|_| !rows.is_empty())?;
         Some(format!(
-            "characterise.{key} = {mm} is longer than the window {} of {:.4} mm, which is taken \
-             as one section",
+            "characterise.{key} = {mm} is longer than what is evaluated of the window {}, {:.4} mm, \
+             which is taken as one section",
             window.name,
-            length_mm(window)
+            mm_of(evaluated(parameters, window).len(), window)
         ))
     };
-    let longer = keys.into_iter().filter_map(longer);
+    let longer: Vec<String> = keys.into_iter().filter_map(longer).collect();
     (rows, told.into_iter().chain(longer).collect())
 }
 
@@ -221,7 +224,7 @@ fn misfit(parameters: &Characterise, window: &LineScan) -> Option<String> {
     /// Fewer points show no peak between two valleys.
     const FEWEST_POINTS: usize = 5;
     let (spacing_mm, length_mm) = (window.spacing * 1e3, length_mm(window));
-    let points = section_points(parameters, window);
+    let (evaluated, points) = (evaluated(parameters, window), section_points(parameters, window));
     match (parameters.lambda_c_mm, parameters.lambda_s_mm) {
         (Some(mm), _) if mm < 2.0 * spacing_mm => Some(format!(
             "characterise.lambda_c_mm = {mm} is below two spacings of {spacing_mm:.4} mm: no \
@@ -229,6 +232,11 @@ fn misfit(parameters: &Characterise, window: &LineScan) -> Option<String> {
         )),
         (_, Some(mm)) if mm > length_mm / 3.0 => Some(format!(
             "characterise.lambda_s_mm = {mm} is longer than a third of its {length_mm:.4} mm"
+        )),
+        _ if evaluated.is_empty() => Some(format!(
+            "the Gaussian filter needs half a cut-off at each end, which leaves nothing of its \
+             {length_mm:.4} mm; set a shorter characterise.lambda_c_mm, or characterise.profile_filter = \
+             \"gaussian_regression\", which filters up to the ends"
         )),
         _ if points < FEWEST_POINTS => Some(format!(
             "a section has {points} of at least {FEWEST_POINTS} points; set a longer \
@@ -245,8 +253,8 @@ fn profile_row(parameters: &Characterise, window: &LineScan) -> Result<ProfileRo
     }
     let points = section_points(parameters, window);
     let spacing = window.spacing;
-    let roughness = roughness(parameters, window);
-    let found = profile_parameters(&roughness, spacing, points, parameters.profile_standard)
+    let roughness = &roughness(parameters, window)[evaluated(parameters, window)];
+    let found = profile_parameters(roughness, spacing, points, parameters.profile_standard)
         .ok_or("it is flat, or one of its sections has no height at all")?;
     let ProfileParameters { ra, rq, rp, rv, rz, rt, rsk, rku, rsm, rdq, sections } = found;
     if rp < 0.0 || rv < 0.0 {
@@ -273,11 +281,29 @@ fn profile_row(parameters: &Characterise, window: &LineScan) -> Result<ProfileRo
     })
 }
 
+/// The points that count: those half the longer cut-off or more from both ends where the filter is the
+/// Gaussian of ISO 16610-21, whose weights are one-sided there. Instruments have their run-up and
+/// overrun for it (ISO 4288, ISO 21920-3). The regression filters hold up to the ends.
+fn evaluated(parameters: &Characterise, window: &LineScan) -> Range<usize> {
+    let cut_off_mm = match parameters.profile_filter {
+        ProfileFilter::Gaussian => parameters.lambda_c_mm.or(parameters.lambda_s_mm),
+        ProfileFilter::GaussianRegression | ProfileFilter::RobustGaussian => None,
+    };
+    // Round-off must not cost a point.
+    let end = cut_off_mm.map_or(0, |mm| (mm / 2e3 / window.spacing * (1.0 - 1e-9)).ceil() as usize);
+    match window.heights.len().checked_sub(2 * end) {
+        Some(points) => end..end + points,
+        None => 0..0,
+    }
+}
+
 fn section_points(parameters: &Characterise, window: &LineScan) -> usize {
-    let points = window.heights.len();
+    let points = evaluated(parameters, window).len();
     match parameters.section_length_mm.or(parameters.lambda_c_mm) {
-        // Round-off must not cost a point; a section longer than the window is the window.
-        Some(mm) => ((mm / 1e3 / window.spacing * (1.0 + 1e-9)).floor() as usize).clamp(1, points),
+        // Round-off must not cost a point; a section longer than what counts is all of it.
+        Some(mm) => {
+            ((mm / 1e3 / window.spacing * (1.0 + 1e-9)).floor() as usize).clamp(1, points.max(1))
+        }
         None => (points / SECTIONS).max(1),
     }
 }
@@ -307,19 +333,37 @@ pub(super) fn depth_rows(
     parameters: &Characterise,
     windows: &[LineScan],
 ) -> (Vec<DepthRow>, Vec<String>) {
-    let rows = |window: &LineScan| -> Vec<DepthRow> {
-        let options = parameters.profile_depth.options();
-        let depths = mean_profile_depths(&window.heights, window.spacing, &options);
+    let options = parameters.profile_depth.options();
+    let rows = |window: &LineScan| {
+        let depths = mean_profile_depths(&window.heights, window.spacing, &options)?;
         let row = |segment: crate::surface::texture::SegmentDepth| DepthRow {
             scan: window.name.clone(),
             start_mm: segment.start * 1e3,
             interpolated_share: segment.interpolated,
             depth_mm: segment.depth.filter(|depth| depth.is_finite()).map(|depth| depth * 1e3),
         };
-        depths.into_iter().map(row).collect()
+        Ok(depths.into_iter().map(row).collect())
     };
-    let rows: Vec<DepthRow> = windows.par_iter().flat_map_iter(rows).collect();
-    let limit = 100.0 * parameters.profile_depth.most_drop_outs;
+    let found: Vec<Result<Vec<DepthRow>, DepthError>> = windows.par_iter().map(rows).collect();
+    let reasons = windows.iter().zip(&found).filter_map(|(window, found)| {
+        let error = found.as_ref().err()?;
+        Some((window.name.clone(), error.to_string()))
+    });
+    // Scans of a few centimetres are not made for the mean profile depth: of windows shorter than half
+    // a segment nothing is said unless the recipe has a key of it.
+    let depth = &parameters.profile_depth;
+    let is_meant = *depth != ProfileDepth::default()
+        || windows.iter().any(|window| length_mm(window) >= depth.segment_mm / 2.0);
+    let reasons: Vec<_> = reasons.filter(|_| is_meant).collect();
+    let refused = left_out("windows", windows.len(), "mean profile depth", &reasons);
+    let rows: Vec<DepthRow> = found.into_iter().flatten().flatten().collect();
+    let told = without_depth(depth, &rows);
+    (rows, refused.into_iter().chain(told).collect())
+}
+
+/// A warning of segments of which too little is known.
+fn without_depth(depth: &ProfileDepth, rows: &[DepthRow]) -> Option<String> {
+    let limit = 100.0 * depth.most_drop_outs;
     let without = |row: &&DepthRow| row.depth_mm.is_none();
     let told = |row: &DepthRow| {
         let (name, share) = (&row.scan, 100.0 * row.interpolated_share);
@@ -331,30 +375,7 @@ pub(super) fn depth_rows(
         (format!("{name} from {:.1} mm on", row.start_mm), reason)
     };
     let without: Vec<_> = rows.iter().filter(without).map(told).collect();
-    let told = left_out("segments", rows.len(), "mean profile depth", &without);
-    let warnings = too_short(&parameters.profile_depth, windows).into_iter().chain(told).collect();
-    (rows, warnings)
-}
-
-/// A warning of windows shorter than a segment. Scans of a few centimetres are not made for the
-/// mean profile depth: of windows shorter than half a segment nothing is said unless the recipe
-/// has a key of it.
-fn too_short(depth: &ProfileDepth, windows: &[LineScan]) -> Option<String> {
-    let segment = depth.segment_mm / 1e3 * (1.0 + 1e-9);
-    let is_short = |window: &&LineScan| window.heights.len() < (segment / window.spacing) as usize;
-    let is_meant = *depth != ProfileDepth::default()
-        || windows.iter().any(|window| length_mm(window) >= depth.segment_mm / 2.0);
-    let reason = |window: &LineScan| {
-        let reason = format!(
-            "its {:.1} mm are shorter than a segment \
-             (characterise.profile_depth.segment_mm = {})",
-            length_mm(window),
-            depth.segment_mm
-        );
-        (window.name.clone(), reason)
-    };
-    let short: Vec<_> = windows.iter().filter(is_short).filter(|_| is_meant).map(reason).collect();
-    left_out("windows", windows.len(), "mean profile depth", &short)
+    left_out("segments", rows.len(), "mean profile depth", &without)
 }
 
 /// Bands in which a spectrum of a gappy scan came out without power have no level and no row.

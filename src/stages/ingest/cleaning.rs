@@ -18,14 +18,14 @@ pub fn cleaning_markdown(
     pictures: &BTreeMap<String, String>,
 ) -> String {
     let mut text = String::from("# What was cleaned\n");
-    let found = |scan: &ScanReportRow| -> Vec<&FaultRow> {
-        let of_scan = |fault: &&FaultRow| fault.scan == scan.scan && fault.count > 0;
-        faults.iter().filter(of_scan).collect()
-    };
+    let mut by_scan: BTreeMap<&str, Vec<&FaultRow>> = BTreeMap::new();
+    for fault in faults.iter().filter(|fault| fault.count > 0) {
+        by_scan.entry(&fault.scan).or_default().push(fault);
+    }
     let mut clean = Vec::new();
     let mut gappy = String::new();
     for scan in scans {
-        let found = found(scan);
+        let found = by_scan.remove(scan.scan.as_str()).unwrap_or_default();
         // Only what can be taken away has an effect.
         if found.iter().any(|fault| fault.rms_slope_before.is_some()) {
             section(&mut text, scan, &found);

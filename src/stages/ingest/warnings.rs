@@ -1,7 +1,10 @@
 //! What a user is told of the scans.
 
 use super::{Conditioned, Ingest, ReadFile, ScanFile};
-use crate::surface::ConditioningReport;
+use crate::scans::TextFormat;
+use crate::scans::description::LengthUnit;
+use crate::scans::text_shape::{repeated_inside, unit_name};
+use crate::surface::{ConditioningReport, RawScan};
 
 /// Where the description does not fit the files.
 pub(super) fn of_description(
@@ -25,6 +28,8 @@ pub(super) fn of_description(
                 .to_owned(),
         );
     }
+    warnings.extend(channels(ingest, files, read));
+    warnings.extend(repeated_heights(files, read));
     let contradicted: Vec<_> =
         files.iter().zip(read).filter(|(_, read)| !read.contradictions.is_empty()).collect();
     if let Some((file, read)) = contradicted.first() {
@@ -38,6 +43,68 @@ pub(super) fn of_description(
         ));
     }
     warnings
+}
+
+/// Channels of ERD files of which one was taken without being asked for, or that no file has.
+fn channels(ingest: &Ingest, files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+    if ingest.erd_channel.is_some() {
+        let none = read.iter().all(|file| !file.is_erd);
+        return none.then(|| "ingest.erd_channel does nothing: no scan is an ERD file".to_owned());
+    }
+    let several =
+        files.iter().zip(read).filter_map(|(file, read)| Some((file, read.channels.as_ref()?)));
+    let several: Vec<_> = several.collect();
+    let (file, channels) = several.first()?;
+    Some(format!(
+        "{} of {} files have several channels of heights, of which the first is taken: in {} these are \
+         {channels}; choose by ingest.erd_channel",
+        several.len(),
+        files.len(),
+        file.name
+    ))
+}
+
+/// A height that seems to stand for missing ones in a scan, in words with its count and share, as
+/// the file has it; `None` for `format` means the file of an instrument.
+pub(super) fn repeated(scan: &RawScan, format: Option<&TextFormat>) -> Option<String> {
+    let found = repeated_inside(&scan.heights);
+    let mark = found.first()?;
+    let unit = format.and_then(|format| format.z_unit).unwrap_or(LengthUnit::Mm);
+    let sign = if format.is_some_and(|format| format.invert_z) { -1.0 } else { 1.0 };
+    // Nine digits and more are round-off of the conversion to metres. Adding 0 takes the sign off 0.
+    let typed = sign * mark.height / unit.metres(1.0) + 0.0;
+    let typed: f64 = format!("{typed:.9e}").parse().unwrap_or(typed);
+    let points = scan.heights.len();
+    Some(format!(
+        "the height {typed} {} is there {} times in {points} points ({:.1} %), any other {} times at \
+         most",
+        unit_name(unit),
+        mark.count,
+        100.0 * mark.count as f64 / points as f64,
+        mark.others
+    ))
+}
+
+/// Says so where a height is repeated as if it stood for missing ones.
+fn repeated_heights(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+    let found: Vec<_> =
+        files.iter().zip(read).filter(|(_, read)| read.repeated.is_some()).collect();
+    let (file, read) = found.first()?;
+    let way_out = match read.is_text {
+        true => "list it in ingest.text.missing if it marks points without a return",
+        false => {
+            "if it marks points without a return, export the file with a mark for them, or as text \
+             with ingest.text.missing"
+        }
+    };
+    Some(format!(
+        "{} of {} files repeat one height as if it were a mark of missing points: in the first, {}, {}; \
+         {way_out}",
+        found.len(),
+        files.len(),
+        file.name,
+        read.repeated.as_deref().unwrap_or_default()
+    ))
 }
 
 /// What the scans themselves give reason for.

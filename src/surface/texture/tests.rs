@@ -9,11 +9,34 @@ fn waves(amplitude: f64) -> Vec<f64> {
     (0..1000).map(|i| amplitude * (TAU * (f64::from(i) + 0.5) / 40.0).cos()).collect()
 }
 
+fn depths_of(heights: &[f64], spacing: f64, options: &DepthOptions) -> Vec<SegmentDepth> {
+    mean_profile_depths(heights, spacing, options).unwrap()
+}
+
+#[test]
+fn profiles_too_coarse_for_texture_and_filters_without_effect_are_refused() {
+    let usual = DepthOptions::default();
+    let heights = waves(1e-3);
+    for spacing in [1.01e-3, 25e-3, 0.25] {
+        let refused = mean_profile_depths(&heights, spacing, &usual).unwrap_err();
+        assert_eq!(refused, DepthError::Spacing { spacing });
+        assert!(refused.to_string().contains("asks for at most 1 mm"), "{refused}");
+    }
+    // One millimetre is allowed, also when fitted to positions.
+    assert_eq!(depths_of(&heights, 1.0001e-3, &usual).len(), 10);
+    let low_pass = DepthOptions { low_pass: 2e-3, ..usual };
+    let refused = mean_profile_depths(&heights, 1e-3, &low_pass).unwrap_err();
+    assert_eq!(refused, DepthError::LowPass { low_pass: 2e-3, spacing: 1e-3 });
+    let segment = DepthOptions { segment: 3e-3, ..usual };
+    let refused = mean_profile_depths(&heights, 1e-3, &segment).unwrap_err();
+    assert_eq!(refused, DepthError::FewPoints { segment: 3e-3, points: 3 });
+}
+
 #[test]
 fn the_depth_of_a_wave_is_its_amplitude_whatever_its_tilt() {
     let tilted =
         waves(1e-3).iter().enumerate().map(|(i, z)| z + 1e-5 * i as f64).collect::<Vec<_>>();
-    let depths = mean_profile_depths(&tilted, SPACING, &DepthOptions::default());
+    let depths = depths_of(&tilted, SPACING, &DepthOptions::default());
     assert_eq!(depths.len(), 5);
     for segment in &depths {
         // The low-pass takes (2.4/20)^4 = 2e-4, the crest lies half a point off (3e-3), and a
@@ -38,18 +61,21 @@ fn drop_outs_beyond_a_tenth_and_short_scans_have_no_depth() {
     let mut heights = waves(1e-3);
     heights[10..31].fill(f64::NAN);
     heights[200..220].fill(f64::NAN);
-    let depths = mean_profile_depths(&heights, SPACING, &DepthOptions::default());
+    let depths = depths_of(&heights, SPACING, &DepthOptions::default());
     assert_eq!((depths[0].depth, depths[0].interpolated), (None, 0.105));
     assert!(depths[1].depth.is_some());
-    assert!(mean_profile_depths(&heights[..100], SPACING, &DepthOptions::default()).is_empty());
-    assert!(mean_profile_depths(&[f64::NAN; 400], SPACING, &DepthOptions::default()).is_empty());
+    let refused = |heights: &[f64]| {
+        mean_profile_depths(heights, SPACING, &DepthOptions::default()).unwrap_err()
+    };
+    assert_eq!(refused(&heights[..100]), DepthError::Short { length: 0.05, segment: 0.1 });
+    assert_eq!(refused(&[f64::NAN; 400]), DepthError::NoHeights);
 }
 
 #[test]
 fn the_choices_of_the_standard_can_be_made() {
     let heights = waves(1e-3);
     let usual = DepthOptions::default();
-    let depths = |options| mean_profile_depths(&heights, SPACING, &options);
+    let depths = |options| depths_of(&heights, SPACING, &options);
     let halved = DepthOptions { segment: 0.05, ..usual };
     assert_eq!(depths(halved).len(), 2 * depths(usual).len());
     // Nothing of a wave of 20 mm is left by a low-pass ten times as long.
@@ -60,18 +86,18 @@ fn the_choices_of_the_standard_can_be_made() {
     let mut spiked = heights.clone();
     spiked[100] += 9e-3;
     let blunt = DepthOptions { spike_slope: 30.0, ..usual };
-    assert_eq!(mean_profile_depths(&spiked, SPACING, &blunt)[0].interpolated, 0.0);
+    assert_eq!(depths_of(&spiked, SPACING, &blunt)[0].interpolated, 0.0);
     spiked[110..120].fill(f64::NAN);
     let strict = DepthOptions { most_drop_outs: 0.04, ..usual };
-    assert_eq!(mean_profile_depths(&spiked, SPACING, &strict)[0].depth, None);
+    assert_eq!(depths_of(&spiked, SPACING, &strict)[0].depth, None);
 }
 
 #[test]
 fn spikes_are_interpolated() {
     let mut heights = waves(1e-3);
-    let clean = mean_profile_depths(&heights, SPACING, &DepthOptions::default());
+    let clean = depths_of(&heights, SPACING, &DepthOptions::default());
     heights[100] += 9e-3;
-    let spiked = mean_profile_depths(&heights, SPACING, &DepthOptions::default());
+    let spiked = depths_of(&heights, SPACING, &DepthOptions::default());
     assert_eq!(spiked[0].interpolated, 1.0 / 200.0);
     // A wave of 40 points is straight between neighbours to 1.2 %.
     approx::assert_relative_eq!(
