@@ -72,7 +72,7 @@ impl Convert {
             let problem = "is a folder; give the file of one scan";
             return Err(CliError::input(format!("{} {problem}", self.file.display())));
         }
-        let native = read_file(&self.file).map_err(CliError::input)?;
+        let native = read_file(&self.file)?;
         if native.is_some() {
             let what = "the file of an instrument, which states its units";
             self.scan.refuse(&self.file, what)?;
@@ -87,7 +87,7 @@ impl Convert {
                 self.file.display()
             ))
         })?;
-        read_text(&self.file, &format).map_err(CliError::input)
+        Ok(read_text(&self.file, &format)?)
     }
 
     fn on_grid(&self) -> Result<ScanFile, CliError> {

@@ -69,10 +69,10 @@ pub(super) struct Export {
     #[arg(long, value_name = "PATH")]
     to: Option<PathBuf>,
     /// Only this number of waves.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::values::count::<u32>, allow_negative_numbers = true)]
     waves: Option<u32>,
     /// Only this speed in mm/s.
-    #[arg(long, value_name = "MM_S")]
+    #[arg(long, value_name = "MM_S", value_parser = super::values::positive, allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Only this contact model.
     #[arg(long, value_enum)]
@@ -105,16 +105,15 @@ impl Export {
         if let Some(table) = &self.table {
             return self.one_table(&view, table, quiet);
         }
-        if view.stage_manifest(STAGE).map_err(CliError::input)?.is_some() {
+        if view.stage_manifest(STAGE)?.is_some() {
             return self.sweep(&view);
         }
-        if view.stage_manifest("sinusoid").map_err(CliError::input)?.is_some() {
+        if view.stage_manifest("sinusoid")?.is_some() {
             self.warn_of_doubt("sinusoid", quiet);
             return self.study(&view);
         }
         self.warn_of_doubt("tables", quiet);
-        let (rows, _) =
-            view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;
+        let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE)?;
         if self.comparison {
             return self.comparison(&view, &rows);
         }
@@ -127,7 +126,7 @@ impl Export {
             )));
         }
         let tables = friction_tables(&rows);
-        let about = About::of(&view).map_err(CliError::input)?;
+        let about = About::of(&view)?;
         match self.format {
             Format::Csv => self.csv(&tables),
             Format::Markdown => self.text(&markdown(&tables, &about)),
@@ -139,7 +138,7 @@ impl Export {
                 let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
                 write_file(path, self.force, |out| out.write_all(&bytes))
             }
-            Format::Svg => self.text(&friction_figure(&tables).map_err(CliError::failure)?),
+            Format::Svg => self.text(&friction_figure(&tables)?),
             Format::Parquet => {
                 let Some(path) = &self.to else {
                     return Err(CliError::input("Parquet is binary: give a file with --to"));
@@ -174,11 +173,11 @@ impl Export {
                  the table ingest/faults",
             ));
         }
-        view.verify("ingest").map_err(CliError::input)?;
+        view.verify("ingest")?;
         self.warn_of_doubt("ingest", quiet);
-        let (scans, _) = view.read_table("ingest", REPORT_FILE).map_err(CliError::input)?;
-        let (faults, _) = view.read_table("ingest", FAULTS_FILE).map_err(CliError::input)?;
-        let (windows, _) = view.read_table("ingest", WINDOWS_FILE).map_err(CliError::input)?;
+        let (scans, _) = view.read_table("ingest", REPORT_FILE)?;
+        let (faults, _) = view.read_table("ingest", FAULTS_FILE)?;
+        let (windows, _) = view.read_table("ingest", WINDOWS_FILE)?;
         self.text(&cleaning_markdown(&scans, &faults, &windows, &BTreeMap::new()))
     }
 
@@ -195,10 +194,10 @@ impl Export {
                 if tables.is_empty() { "none yet".into() } else { tables.join(", ") }
             )));
         };
-        view.verify(stage).map_err(CliError::input)?;
+        view.verify(stage)?;
         self.warn_of_doubt(stage, quiet);
         let file = format!("{name}.arrow");
-        let mut frame = data_frame_of(&view.file(stage, &file)).map_err(CliError::input)?;
+        let mut frame = data_frame_of(&view.file(stage, &file))?;
         match (self.format, &self.to) {
             (Format::Csv, None) => print(&csv_text(&mut frame)?),
             (Format::Csv, Some(path)) => {
@@ -218,8 +217,7 @@ impl Export {
         if self.format != Format::Markdown {
             return Err(CliError::input("a comparison is a document: give --format markdown"));
         }
-        let (compared, metadata) =
-            view.read_table::<ComparisonRow>("tables", COMPARISON_FILE).map_err(CliError::input)?;
+        let (compared, metadata) = view.read_table::<ComparisonRow>("tables", COMPARISON_FILE)?;
         let note = metadata.get(NOTE_KEY).map_or("", String::as_str);
         let realisations = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
         self.text(&comparison_markdown(note, &compared, realisations))
@@ -245,9 +243,8 @@ impl Export {
                 self.by_rename(path, |temporary| write_csv(&mut frame, temporary))
             }
             (Some(folder), tables) => {
-                std::fs::create_dir_all(folder).map_err(|error| {
-                    CliError::failure(format!("cannot create {}: {error}", folder.display()))
-                })?;
+                std::fs::create_dir_all(folder)
+                    .map_err(|error| CliError::no_folder(folder, &error))?;
                 for table in tables {
                     let mut frame = published(table)?;
                     let path = folder.join(table.file_stem()).with_extension("csv");
@@ -266,7 +263,7 @@ impl Export {
     ) -> Result<(), CliError> {
         let folder = tempfile::tempdir().map_err(CliError::failure)?;
         let temporary = folder.path().join("export");
-        write(&temporary).map_err(CliError::failure)?;
+        write(&temporary)?;
         let bytes = std::fs::read(&temporary).map_err(CliError::failure)?;
         write_file(path, self.force, |out| out.write_all(&bytes))
     }
@@ -289,7 +286,7 @@ fn all_tables(view: &RunView) -> Vec<String> {
 fn csv_text(frame: &mut polars::prelude::DataFrame) -> Result<String, CliError> {
     let folder = tempfile::tempdir().map_err(CliError::failure)?;
     let path = folder.path().join("table.csv");
-    write_csv(frame, &path).map_err(CliError::failure)?;
+    write_csv(frame, &path)?;
     std::fs::read_to_string(path).map_err(CliError::failure)
 }
 

@@ -15,13 +15,15 @@ use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::report::html::Origin;
 use crate::stages::Stage;
-use crate::sweep::slurm::shell_word;
+use crate::sweep::slurm::shell_path;
 
 /// What `asperity run` was given, as absolute paths.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct LastRun {
+    #[serde(with = "crate::files::name::path")]
     recipe: PathBuf,
     /// Those of the command line.
+    #[serde(with = "crate::files::name::paths")]
     scans: Vec<PathBuf>,
     /// That of the command line.
     #[serde(default)]
@@ -162,7 +164,7 @@ impl LastRun {
 
 /// A path as one word of a shell.
 fn quoted(path: &Path) -> String {
-    shell_word(&path.display().to_string())
+    shell_path(path)
 }
 
 /// The reasons, or those of the stage before that they refer to.

@@ -14,6 +14,7 @@ mod reliability;
 pub use reliability::{Probe, WAVELENGTHS_PER_SPOT};
 
 use super::LineScan;
+use crate::error_kind::{ErrorKind, HasKind};
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex, num_complex::Complex};
 use std::collections::BTreeMap;
@@ -81,6 +82,17 @@ pub enum CorrelationError {
     /// An average over nothing.
     #[error("no correlations to average; give at least one scan")]
     NoScans,
+}
+
+impl HasKind for CorrelationError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::TooFewHeights { .. } | Self::UnequalSpacing { .. } | Self::NoScans => {
+                ErrorKind::Input
+            }
+            Self::TooLong { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 impl HeightDifferenceCorrelation {

@@ -85,7 +85,8 @@ impl Inspect {
             self.scan.refuse(path, "a folder")?;
             return folder::read(path);
         }
-        let start = first_bytes(path)
+        let start = crate::files::admit(path, u64::MAX)
+            .and_then(|()| first_bytes(path))
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         let format = Format::of(&start);
         if let Some(what) = format.not_text() {
@@ -120,7 +121,7 @@ impl Inspect {
 
 /// Reads the instrument file at `path`.
 fn instrument_file(path: &Path) -> Result<Finding, CliError> {
-    let scan = read_file(path).map_err(CliError::input)?;
+    let scan = read_file(path)?;
     // The first bytes have told the family, and the file is read again.
     let scan = scan.ok_or_else(|| foreign(path, "changes while it is read"))?;
     let file = InstrumentFile::of(path, &scan);
