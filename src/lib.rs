@@ -60,7 +60,9 @@ pub mod bench;
 #[doc(hidden)]
 pub mod cli;
 pub mod contact;
+pub mod error_kind;
 pub mod fem;
+pub mod files;
 #[doc(hidden)]
 pub mod forecast;
 pub mod multiscale;

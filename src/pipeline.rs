@@ -6,6 +6,7 @@ mod plan;
 use crate::artifact::{
     ArtifactError, Identity, Manifest, RunFolder, RunView, SOLVES_FOLDER, SolveStore,
 };
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::recipe::{Recipe, Violation, Work};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
@@ -109,10 +110,23 @@ pub enum PipelineError {
     },
 }
 
+impl HasKind for PipelineError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Stage { source, .. } => source.kind(),
+            Self::Recipe(source) => source.kind(),
+            Self::Artifact(source) => source.kind(),
+            Self::NoSuchStage { .. } | Self::ForcedOutside { .. } | Self::StaleInput { .. } => {
+                ErrorKind::Input
+            }
+        }
+    }
+}
+
 impl PipelineError {
     /// Whether the user interrupted.
     pub fn is_interrupt(&self) -> bool {
-        matches!(self, Self::Stage { source, .. } if matches!(**source, StageError::Interrupted))
+        self.kind() == ErrorKind::Interrupted
     }
 }
 

@@ -5,6 +5,9 @@ mod sweep;
 
 pub use sweep::{Case, Specimen, Sweep};
 
+use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
+use crate::error_kind::{ErrorKind, HasKind};
+use crate::files::{self, TomlError};
 use crate::scans::ScanProblem;
 use crate::stages::{
     approximate::Approximate,
@@ -31,7 +34,7 @@ use std::path::{Path, PathBuf};
 pub struct Recipe {
     /// What the run is about, in one line.
     pub title: String,
-    /// Wanted relative accuracy of the averaged friction, between 1e-4 and 0.5. A quarter each may go to
+    /// Wanted relative accuracy of the averaged friction, between 1e-8 and 0.5. A quarter each may go to
     /// the grids (`bem.grid_tolerance`) and to interpolation (`bem.tolerance`, `micro.tolerance`), an eighth
     /// to waves that are left out; realisations are solved until their statistical error fits into the
     /// rest (`bem.average_tolerance`), up to `realise.most_realisations`. The recipe leaves the keys of `bem`
@@ -110,44 +113,59 @@ pub struct Chain<'a> {
 #[derive(Debug, thiserror::Error)]
 pub enum RecipeError {
     /// The file cannot be read.
-    #[error("recipe {}: cannot be read: {source}", path.display())]
+    #[error("recipe {}: cannot be read: {source}{}", path.display(), files::advice(source))]
     Read {
         /// The recipe.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
     },
-    /// The text is no recipe; the message shows the line and names the key.
-    #[error("recipe {}: {source}{hint}", path.display())]
+    /// The text is no recipe.
+    #[error(
+        "recipe {}{problem}{}",
+        path.display(),
+        if *is_rubber { "\n  this is the file of a rubber: give the recipe" } else { "" }
+    )]
     Parse {
         /// The recipe.
         path: PathBuf,
-        /// What the parser says.
-        source: Box<toml::de::Error>,
-        /// What may have been meant, as a line of its own; empty if nothing comes to mind.
-        hint: String,
+        /// Line, key and what to write.
+        problem: TomlError,
+        /// Whether it is the file of a rubber.
+        is_rubber: bool,
     },
     /// A value out of its range, or two that contradict each other.
     #[error(
-        "recipe {}{}: {violation}",
+        "recipe {}{}: {}",
         path.display(),
-        line.map_or_else(String::new, |line| format!(", line {line}"))
+        line.map_or_else(String::new, |line| format!(", line {line}")),
+        violation.in_words(typed.as_deref())
     )]
     Value {
         /// The recipe.
         path: PathBuf,
         /// Line of the key, from 1, if the recipe has it.
         line: Option<usize>,
+        /// The value as the recipe has it.
+        typed: Option<String>,
         /// The key, its value and what it must be.
         violation: Violation,
     },
+}
+
+impl HasKind for RecipeError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Read { .. } | Self::Parse { .. } | Self::Value { .. } => ErrorKind::Input,
+        }
+    }
 }
 
 /// A value of a recipe that does not hold.
 #[derive(Debug, thiserror::Error)]
 pub enum Violation {
     /// In any other section than `[ingest]`.
-    #[error("{key} = {value}, wanted: {demand}")]
+    #[error("{key} = {value}: must be {demand}")]
     Demand {
         /// The key with its section, such as `bem.speeds_mm_s`.
         key: &'static str,
@@ -155,6 +173,14 @@ pub enum Violation {
         value: String,
         /// What it must be.
         demand: &'static str,
+    },
+    /// A key that the recipe needs.
+    #[error("{key} is missing: {advice}")]
+    Missing {
+        /// The key with its section.
+        key: &'static str,
+        /// What to give.
+        advice: &'static str,
     },
     /// A section that the recipe needs.
     #[error(
@@ -195,6 +221,37 @@ pub enum Violation {
     Conditioning(#[from] ConditioningError),
 }
 
+impl HasKind for Violation {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Demand { .. }
+            | Self::Missing { .. }
+            | Self::MissingSection { .. }
+            | Self::SectionBesideSinusoid { .. }
+            | Self::HybridWithoutMicro
+            | Self::SeveralCases { .. }
+            | Self::SweepOfSinusoid => ErrorKind::Input,
+            Self::Text(_) => ErrorKind::Input,
+            Self::Conditioning(source) => source.kind(),
+        }
+    }
+}
+
+impl Violation {
+    /// The message, with the value as it was typed if that is known.
+    fn in_words(&self, typed: Option<&str>) -> String {
+        match (self, typed) {
+            (Self::Demand { key, demand, .. }, Some(typed)) => {
+                format!("{key} = {typed}: must be {demand}")
+            }
+            (Self::Conditioning(ConditioningError::Parameter { key, demand, .. }), Some(typed)) => {
+                format!("ingest.conditioning.{key} = {typed}: {demand}")
+            }
+            _ => self.to_string(),
+        }
+    }
+}
+
 /// `Ok` where the demand holds, else the violation.
 pub(crate) fn demand(
     holds: bool,
@@ -211,7 +268,7 @@ impl Recipe {
     /// # Errors
     /// [`RecipeError`], which names the file and the key.
     pub fn read(path: &Path) -> Result<Self, RecipeError> {
-        let text = std::fs::read_to_string(path)
+        let text = files::read_settings(path)
             .map_err(|source| RecipeError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
@@ -221,17 +278,14 @@ impl Recipe {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, RecipeError> {
-        let mut recipe: Self = toml::from_str(text).map_err(|source| RecipeError::Parse {
+        let mut recipe: Self = toml::from_str(text).map_err(|error| RecipeError::Parse {
             path: path.to_owned(),
-            hint: hints::nearest_key(source.message()),
-            source: Box::new(source),
+            problem: TomlError::new(text, &error),
+            is_rubber: text.contains("equilibrium_modulus_mpa"),
         })?;
         recipe.share_tolerance().and_then(|()| recipe.check()).map_err(|violation| {
-            RecipeError::Value {
-                path: path.to_owned(),
-                line: hints::line(text, &violation),
-                violation,
-            }
+            let (line, typed) = hints::place(text, &violation);
+            RecipeError::Value { path: path.to_owned(), line, typed, violation }
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
@@ -259,7 +313,7 @@ impl Recipe {
         let own = self.bem.as_ref().is_some_and(|bem| {
             [bem.tolerance, bem.grid_tolerance, bem.average_tolerance].iter().any(Option::is_some)
         });
-        let alone = "without bem.tolerance, bem.grid_tolerance and bem.average_tolerance, which follow from it";
+        let alone = "given alone: leave out bem.tolerance, bem.grid_tolerance and bem.average_tolerance, which follow from it";
         demand(!own, "tolerance", tolerance, alone)?;
         self.set_tolerance(tolerance)
     }
@@ -267,15 +321,15 @@ impl Recipe {
     /// Asks for a relative accuracy of the averaged friction, whatever the recipe asks for.
     ///
     /// # Errors
-    /// [`Violation::Demand`] for one that is not between 1e-4 and 0.5, and for the study of one sine.
+    /// [`Violation::Demand`] for one outside [`TOLERANCES`], and for the study of one sine.
     pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Violation> {
-        demand((1e-4..=0.5).contains(&tolerance), "tolerance", tolerance, "between 1e-4 and 0.5")?;
+        demand(TOLERANCES.contains(&tolerance), "tolerance", tolerance, TOLERANCES_IN_WORDS)?;
         let chain = self.sinusoid.is_none();
         demand(
             chain,
             "tolerance",
             tolerance,
-            "no [sinusoid], whose solves have keys of their own",
+            "left out beside [sinusoid], whose solves have keys of their own",
         )?;
         let share = tolerance / 4.0;
         if let Some(bem) = &mut self.bem {
@@ -407,14 +461,14 @@ impl Chain<'_> {
             limit == 0 || self.bem.average_tolerance.is_some(),
             "realise.most_realisations",
             limit,
-            "only with `tolerance`, which it limits; else set realise.realisations",
+            "left out without `tolerance`, which it limits: set realise.realisations",
         )?;
         let (scans, given) = (self.ingest.is_some(), !self.approximate.given.is_empty());
         demand(
             scans != given && (!given || self.approximate.waves.is_empty()),
             "approximate.given",
             self.approximate.given.len(),
-            "either [ingest] with approximate.waves, or approximate.given without both",
+            "given without [ingest] and approximate.waves, or left out with both",
         )?;
         let fitted = self.approximate.numbers();
         demand(

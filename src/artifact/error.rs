@@ -1,5 +1,6 @@
 //! What can go wrong with a file, and what to do about it.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -193,6 +194,32 @@ pub enum ArtifactError {
     },
 }
 
+impl HasKind for ArtifactError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Io { action, cause, .. } => of_io(action, cause),
+            // A result that was given to be read and is another one, damaged or not there.
+            Self::Unreadable { .. }
+            | Self::WrongSchema { .. }
+            | Self::WrongVersion { .. }
+            | Self::WrongColumns { .. }
+            | Self::Missing { .. }
+            | Self::Damaged { .. }
+            | Self::WrongSize { .. }
+            | Self::Foreign { .. }
+            | Self::NoResult { .. }
+            | Self::NoSuchOutput { .. } => ErrorKind::Input,
+            Self::Unwritable { .. }
+            | Self::NotANumber { .. }
+            | Self::RowType { .. }
+            | Self::Dataset { .. }
+            | Self::Locked { .. }
+            | Self::NotRepresentable { .. }
+            | Self::SchemaDrift { .. } => ErrorKind::Failure,
+        }
+    }
+}
+
 impl ArtifactError {
     /// Closure for `map_err` that adds what was attempted and where.
     pub(super) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
@@ -255,7 +282,22 @@ fn advice(cause: &io::Error) -> &'static str {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "; give yourself write access or choose another --out"
         }
+        io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
+            "; a file is in the way, choose another --out"
+        }
         io::ErrorKind::NotFound => "; check the path",
         _ => "",
+    }
+}
+
+/// A file that is not there or not open to the user was given to be read, or a path where something of another
+/// kind is; everything else is the disk.
+fn of_io(action: &str, cause: &io::Error) -> ErrorKind {
+    use io::ErrorKind as Os;
+    let reads = matches!(action, "read" | "open");
+    match cause.kind() {
+        Os::AlreadyExists | Os::NotADirectory | Os::IsADirectory => ErrorKind::Input,
+        Os::NotFound | Os::PermissionDenied if reads => ErrorKind::Input,
+        _ => ErrorKind::Failure,
     }
 }

@@ -59,7 +59,7 @@ impl RunView {
             version: u32,
         }
         let path = self.file(stage, Manifest::FILE);
-        let bytes = match fs::read(&path) {
+        let bytes = match crate::files::read(&path, crate::files::LARGEST_NUMBERS) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             read => read.map_err(ArtifactError::io("read", &path))?,
         };

@@ -24,6 +24,7 @@ pub mod measure;
 pub mod report;
 mod scans;
 
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::krylov::euclidean_norm;
 use measure::{Effort, Measured, measure};
 use serde::Serialize;
@@ -144,6 +145,15 @@ pub enum BenchError {
         /// Why.
         source: Failure,
     },
+}
+
+impl HasKind for BenchError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::UnknownCase { .. } => ErrorKind::Input,
+            Self::Solver { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// All cases, in the order of the tables.

@@ -8,9 +8,9 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::output::{json, note, print, refuse_existing, write_file};
 use crate::bench::figure::figure;
-use crate::bench::growth::{self, GrowthError, Job};
+use crate::bench::growth::{self, Job};
 use crate::bench::measure::Effort;
-use crate::bench::{BenchError, report, select};
+use crate::bench::{report, select};
 
 /// Hidden option by which the executable is started again for one job of the growth.
 const GROWTH_JOB: &str = "--growth-job";
@@ -149,19 +149,4 @@ fn renewed(path: &Path, results: &str) -> Option<String> {
 
 fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
     write_file(path, true, |out| out.write_all(text.as_bytes()))
-}
-
-impl From<BenchError> for CliError {
-    fn from(error: BenchError) -> Self {
-        match error {
-            BenchError::UnknownCase { .. } => Self::input(error),
-            BenchError::Solver { .. } => Self::failure(error),
-        }
-    }
-}
-
-impl From<GrowthError> for CliError {
-    fn from(error: GrowthError) -> Self {
-        Self::failure(error)
-    }
 }

@@ -90,7 +90,7 @@ impl Convert {
                 self.file.display()
             ))
         })?;
-        read_text(&self.file, &format).map_err(CliError::input)
+        Ok(read_text(&self.file, &format)?)
     }
 
     fn on_grid(&self) -> Result<ScanFile, CliError> {

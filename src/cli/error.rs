@@ -1,11 +1,10 @@
 //! Errors with their exit codes.
 
 use std::error::Error;
+use std::io;
+use std::path::Path;
 
-use crate::contact::ContactError;
-use crate::fem::error::{FemError, PathEnd};
-use crate::fem::transient::TransientError;
-use crate::surface::synthesis::SynthesisError;
+use crate::error_kind::{ErrorKind, HasKind};
 
 type Cause = Box<dyn Error + Send + Sync>;
 
@@ -34,6 +33,26 @@ impl CliError {
         Self::Failure(cause.into())
     }
 
+    /// An error of a kind, from an error or a text that says more than it.
+    pub fn of(kind: ErrorKind, cause: impl Into<Cause>) -> Self {
+        match kind {
+            ErrorKind::Input => Self::input(cause),
+            ErrorKind::Failure => Self::failure(cause),
+            ErrorKind::Interrupted => Self::Interrupted,
+        }
+    }
+
+    /// A folder that cannot be made: bad input where something else is in the way.
+    pub fn no_folder(path: &Path, error: &io::Error) -> Self {
+        let path = path.display();
+        match error.kind() {
+            io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {
+                Self::input(format!("{path} is a file, not a folder: choose another place"))
+            }
+            _ => Self::failure(format!("cannot create the folder {path}: {error}")),
+        }
+    }
+
     /// The exit code of the process.
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -43,7 +62,7 @@ impl CliError {
         }
     }
 
-    /// The message and, a line each, its causes. A cause that the message before it ends with has
+    /// The message and, a line each, its causes. A cause that stands in the message before it has
     /// been said.
     pub fn report(&self) -> String {
         let mut last = self.to_string();
@@ -51,7 +70,7 @@ impl CliError {
         let mut source = self.source();
         while let Some(cause) = source {
             let text = cause.to_string();
-            if !last.ends_with(&text) {
+            if !last.contains(&text) {
                 report.push_str("\n  caused by: ");
                 report.push_str(&text.trim_end().replace('\n', "\n    "));
                 last = text;
@@ -62,56 +81,20 @@ impl CliError {
     }
 }
 
-impl From<ContactError> for CliError {
-    fn from(error: ContactError) -> Self {
-        match error {
-            ContactError::Rubber(_)
-            | ContactError::OutOfRange { .. }
-            | ContactError::BadHeight { .. } => Self::input(error),
-            ContactError::NotConverged { .. } | ContactError::AreaNotReached { .. } => {
-                Self::failure(error)
-            }
-        }
-    }
-}
-
-impl From<FemError> for CliError {
-    fn from(error: FemError) -> Self {
-        match error {
-            FemError::Rubber(_) | FemError::OutOfRange { .. } => Self::input(error),
-            FemError::PathEnded { reached: PathEnd::NotStarted, .. } => {
-                Self::failure(format!("{error}; try other --columns"))
-            }
-            FemError::PathEnded { reached: PathEnd::At { .. }, .. } => {
-                Self::failure(format!("{error}; try other --columns, or a pressure below that"))
-            }
-            FemError::AreaNotReached { .. } => {
-                Self::failure(format!("{error}; give more --columns for a smaller area"))
-            }
-        }
-    }
-}
-
-impl From<TransientError> for CliError {
-    fn from(error: TransientError) -> Self {
-        match error {
-            TransientError::Stopped { .. } => Self::failure(error),
-            TransientError::Rubber(_)
-            | TransientError::OutOfRange { .. }
-            | TransientError::PeriodMismatch { .. } => Self::input(error),
-        }
-    }
-}
-
-impl From<SynthesisError> for CliError {
-    fn from(error: SynthesisError) -> Self {
-        Self::input(error)
+/// The error itself says what it is ([`HasKind`]).
+impl<E: HasKind + Send + Sync + 'static> From<E> for CliError {
+    fn from(error: E) -> Self {
+        Self::of(error.kind(), error)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::ContactError;
+    use crate::pipeline::PipelineError;
+    use crate::scans::{FileError, FileProblem};
+    use crate::stages::{SolveError, Stage, StageError};
 
     #[derive(Debug, thiserror::Error)]
     #[error("{text}")]
@@ -139,9 +122,20 @@ mod tests {
             iterations: 100,
             changes: 2,
         };
-        assert_eq!(CliError::from(unconverged).exit_code(), 1);
+        assert_eq!(CliError::from(unconverged.clone()).exit_code(), 1);
         let height = ContactError::BadHeight { index: 3, value: f64::NAN };
         assert_eq!(CliError::from(height).exit_code(), 2);
         assert_eq!(CliError::Interrupted.exit_code(), 130);
+        // The same through any number of layers.
+        let in_stage =
+            |source| PipelineError::Stage { stage: Stage::Bem, source: Box::new(source) };
+        let solve = |source| StageError::Solve { problem: "p".into(), source: Box::new(source) };
+        let unconverged = in_stage(solve(SolveError::Contact(unconverged)));
+        assert_eq!(CliError::from(unconverged).exit_code(), 1);
+        let stopped = in_stage(solve(SolveError::Interrupted));
+        assert_eq!(CliError::from(stopped).exit_code(), 130);
+        let problem = FileProblem::AllMissing { points: 4 };
+        let scan = FileError { file: "scan.sdf".into(), problem };
+        assert_eq!(CliError::from(in_stage(StageError::File(Box::new(scan)))).exit_code(), 2);
     }
 }

@@ -71,10 +71,10 @@ pub(super) struct Export {
     #[arg(long, value_name = "PATH")]
     to: Option<PathBuf>,
     /// Only this number of waves.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::values::count::<u32>, allow_negative_numbers = true)]
     waves: Option<u32>,
     /// Only this speed in mm/s.
-    #[arg(long, value_name = "MM_S")]
+    #[arg(long, value_name = "MM_S", value_parser = super::values::positive, allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Only this contact model.
     #[arg(long, value_enum)]
@@ -107,16 +107,15 @@ impl Export {
         if let Some(table) = &self.table {
             return self.one_table(&view, table, quiet);
         }
-        if view.stage_manifest(STAGE).map_err(CliError::input)?.is_some() {
+        if view.stage_manifest(STAGE)?.is_some() {
             return self.sweep(&view);
         }
-        if view.stage_manifest("sinusoid").map_err(CliError::input)?.is_some() {
+        if view.stage_manifest("sinusoid")?.is_some() {
             self.warn_of_doubt("sinusoid", quiet);
             return self.study(&view);
         }
         self.warn_of_doubt("tables", quiet);
-        let (rows, _) =
-            view.read_table::<FrictionRow>("tables", FRICTION_FILE).map_err(CliError::input)?;
+        let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE)?;
         if self.comparison {
             return self.comparison(&view, &rows);
         }
@@ -129,7 +128,7 @@ impl Export {
             )));
         }
         let tables = friction_tables(&rows);
-        let about = About::of(&view).map_err(CliError::input)?;
+        let about = About::of(&view)?;
         match self.format {
             Format::Csv => self.csv(&tables),
             Format::Markdown => self.text(&markdown(&tables, &about)),
@@ -141,7 +140,7 @@ impl Export {
                 let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
                 write_file(path, self.force, |out| out.write_all(&bytes))
             }
-            Format::Svg => self.text(&friction_figure(&tables).map_err(CliError::failure)?),
+            Format::Svg => self.text(&friction_figure(&tables)?),
             Format::Parquet => {
                 let Some(path) = &self.to else {
                     return Err(CliError::input("Parquet is binary: give a file with --to"));
@@ -176,11 +175,11 @@ impl Export {
                  the table ingest/faults",
             ));
         }
-        view.verify("ingest").map_err(CliError::input)?;
+        view.verify("ingest")?;
         self.warn_of_doubt("ingest", quiet);
-        let (scans, _) = view.read_table("ingest", REPORT_FILE).map_err(CliError::input)?;
-        let (faults, _) = view.read_table("ingest", FAULTS_FILE).map_err(CliError::input)?;
-        let (windows, _) = view.read_table("ingest", WINDOWS_FILE).map_err(CliError::input)?;
+        let (scans, _) = view.read_table("ingest", REPORT_FILE)?;
+        let (faults, _) = view.read_table("ingest", FAULTS_FILE)?;
+        let (windows, _) = view.read_table("ingest", WINDOWS_FILE)?;
         self.text(&cleaning_markdown(&scans, &faults, &windows, &BTreeMap::new()))
     }
 
@@ -197,10 +196,10 @@ impl Export {
                 if tables.is_empty() { "none yet".into() } else { tables.join(", ") }
             )));
         };
-        view.verify(stage).map_err(CliError::input)?;
+        view.verify(stage)?;
         self.warn_of_doubt(stage, quiet);
         let file = format!("{name}.arrow");
-        let mut frame = data_frame_of(&view.file(stage, &file)).map_err(CliError::input)?;
+        let mut frame = data_frame_of(&view.file(stage, &file))?;
         match (self.format, &self.to) {
             (Format::Csv, None) => print(&csv_text(&frame)?),
             (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
@@ -216,8 +215,7 @@ impl Export {
         if self.format != Format::Markdown {
             return Err(CliError::input("a comparison is a document: give --format markdown"));
         }
-        let (compared, metadata) =
-            view.read_table::<ComparisonRow>("tables", COMPARISON_FILE).map_err(CliError::input)?;
+        let (compared, metadata) = view.read_table::<ComparisonRow>("tables", COMPARISON_FILE)?;
         let note = metadata.get(NOTE_KEY).map_or("", String::as_str);
         let realisations = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
         self.text(&comparison_markdown(note, &compared, realisations))
@@ -242,9 +240,8 @@ impl Export {
                 self.bytes(path, csv_bytes(&published(table)?))
             }
             (Some(folder), tables) => {
-                std::fs::create_dir_all(folder).map_err(|error| {
-                    CliError::failure(format!("cannot create {}: {error}", folder.display()))
-                })?;
+                std::fs::create_dir_all(folder)
+                    .map_err(|error| CliError::no_folder(folder, &error))?;
                 let path =
                     |table: &FrictionTable| folder.join(table.file_stem()).with_extension("csv");
                 for table in tables {
@@ -259,7 +256,7 @@ impl Export {
     }
 
     fn bytes(&self, path: &Path, bytes: Result<Vec<u8>, ArtifactError>) -> Result<(), CliError> {
-        let bytes = bytes.map_err(CliError::failure)?;
+        let bytes = bytes?;
         write_file(path, self.force, |out| out.write_all(&bytes))
     }
 }
@@ -279,7 +276,7 @@ fn all_tables(view: &RunView) -> Vec<String> {
 }
 
 fn csv_text(frame: &polars::prelude::DataFrame) -> Result<String, CliError> {
-    String::from_utf8(csv_bytes(frame).map_err(CliError::failure)?).map_err(CliError::failure)
+    String::from_utf8(csv_bytes(frame)?).map_err(CliError::failure)
 }
 
 /// The table with the columns of the published ones and the interval.

@@ -14,7 +14,7 @@ use crate::pipeline::{self, State};
 use crate::recipe::Recipe;
 use crate::report::html::Origin;
 use crate::stages::Stage;
-use crate::sweep::slurm::shell_word;
+use crate::sweep::slurm::shell_path;
 
 const SCHEMA: &str = "asperity.last_run";
 
@@ -24,11 +24,17 @@ pub(super) struct LastRun {
     /// Always [`SCHEMA`]; empty in notes of earlier versions.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     schema: String,
+    #[serde(with = "crate::files::name::path")]
     recipe: PathBuf,
     /// The recipe as seen from the run folder, which stays when both are moved.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        with = "crate::files::name::optional_path",
+        skip_serializing_if = "Option::is_none"
+    )]
     recipe_from_here: Option<PathBuf>,
     /// Those of the command line.
+    #[serde(with = "crate::files::name::paths")]
     scans: Vec<PathBuf>,
     /// That of the command line.
     #[serde(default)]
@@ -243,7 +249,7 @@ fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
 
 /// A path as one word of a shell.
 fn quoted(path: &Path) -> String {
-    shell_word(&path.display().to_string())
+    shell_path(path)
 }
 
 /// The reasons, or those of the stage before that they refer to.

@@ -32,10 +32,14 @@ pub use error::CliError;
 
 use clap::{Parser, Subcommand};
 
+const EXIT_CODES: &str = "\
+Exit codes of every command: 0 success, 1 a computation failed or its result could not be written, 2 something that was given cannot be used, \
+130 interrupted.";
+
 /// Hysteretic rubber friction on asphalt: profilometer scans in, friction tables with error bars
 /// out.
 #[derive(Debug, Parser)]
-#[command(name = "asperity", version, arg_required_else_help = true)]
+#[command(name = "asperity", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Arguments {
     /// Print results and errors only: no warnings, no notes.
     #[arg(long, global = true)]

@@ -9,7 +9,7 @@ use super::output::{json, print, significant};
 use super::progress::Spinner;
 use super::recipe_options::RecipeOptions;
 use super::{CliError, values};
-use crate::forecast::{Forecast, ForecastError, ScaleModel, forecast};
+use crate::forecast::{Forecast, ScaleModel, forecast};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -29,7 +29,7 @@ pub(super) struct PlanCommand {
     #[command(flatten)]
     recipe: RecipeOptions,
     /// Number of threads of the run; all cores if not given.
-    #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     threads: Option<usize>,
     /// Print JSON.
     #[arg(long)]
@@ -52,16 +52,6 @@ impl PlanCommand {
         let forecast = forecast(&recipe, threads, interrupt.flag())?;
         spinner.finish();
         print(&if self.json { json(&forecast)? } else { text(&forecast) })
-    }
-}
-
-impl From<ForecastError> for CliError {
-    fn from(error: ForecastError) -> Self {
-        match error {
-            ForecastError::Pipeline(error) => error.into(),
-            ForecastError::Recipe(_) | ForecastError::Sinusoid => Self::input(error),
-            _ => Self::failure(error),
-        }
     }
 }
 

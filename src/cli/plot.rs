@@ -4,6 +4,7 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{aligned, note, print, write_file};
 use super::run_folder;
+use super::values::meant;
 use crate::report::figures::{ALL, Kind};
 use crate::report::plot::png;
 use clap::Args;
@@ -51,8 +52,8 @@ impl Plot {
         let Some(kind) = Kind::named(name) else {
             let names: Vec<&str> = ALL.iter().map(|kind| kind.name).collect();
             return Err(CliError::input(format!(
-                "there is no figure `{name}`; there are {}",
-                names.join(", ")
+                "there is no figure `{name}`; {}",
+                meant(name, &names)
             )));
         };
         let as_png = self.wants_png()?;
@@ -65,7 +66,7 @@ impl Plot {
         for (_, doubt) in doubts.iter().filter(|(stage, _)| kind.stages.contains(stage)) {
             note(quiet, format_args!("warning: {doubt}"));
         }
-        let svg = figure.svg().map_err(CliError::failure)?;
+        let svg = figure.svg()?;
         let Some(path) = &self.to else { return print(&svg) };
         let bytes = if as_png { png(&svg).map_err(CliError::failure)? } else { svg.into_bytes() };
         write_file(path, self.force, |out| out.write_all(&bytes))

@@ -6,10 +6,8 @@ use clap::Args;
 
 use super::last_run::LastRun;
 use super::{CliError, values};
-use crate::artifact::ArtifactError;
-use crate::pipeline::PipelineError;
+use crate::files;
 use crate::recipe::{Recipe, RecipeError};
-use crate::stages::StageError;
 
 /// Recipe, scans and run folder.
 #[derive(Debug, Args)]
@@ -55,7 +53,7 @@ impl RecipeOptions {
     /// # Errors
     /// [`CliError::Input`]; [`CliError::Failure`] if the working folder is not known.
     pub(super) fn recipe_and_origin(&self) -> Result<(Recipe, LastRun), CliError> {
-        let text = std::fs::read_to_string(&self.recipe)
+        let text = files::read_settings(&self.recipe)
             .map_err(|source| RecipeError::Read { path: self.recipe.clone(), source })?;
         let recipe = with_scans(Recipe::parse(&text, &self.recipe)?, &self.recipe, &self.scans)?;
         let recipe = with_tolerance(recipe, self.tolerance)?;
@@ -124,50 +122,6 @@ pub(super) fn with_tolerance(
             .map_err(|violation| CliError::input(format!("--{violation}")))?;
     }
     Ok(recipe)
-}
-
-impl From<RecipeError> for CliError {
-    fn from(error: RecipeError) -> Self {
-        Self::input(error)
-    }
-}
-
-/// Whether what the user gave, and not the computation, is why a run ended.
-pub(super) fn is_input(error: &PipelineError) -> bool {
-    match error {
-        PipelineError::StaleInput { .. }
-        | PipelineError::Recipe(_)
-        | PipelineError::NoSuchStage { .. }
-        | PipelineError::ForcedOutside { .. } => true,
-        PipelineError::Artifact(error) => matches!(error, ArtifactError::Foreign { .. }),
-        PipelineError::Stage { source, .. } => matches!(
-            **source,
-            StageError::Scan(_)
-                | StageError::Conditioning(_)
-                | StageError::NoScans { .. }
-                | StageError::ScanIo { .. }
-                | StageError::ScanChanged { .. }
-                | StageError::ReservedName { .. }
-                | StageError::SameName { .. }
-                | StageError::UnequalScans { .. }
-                | StageError::Parameter(_)
-                | StageError::Ladder(_)
-                | StageError::NoWaves { .. }
-                | StageError::Rubber(_)
-                | StageError::RubberAtFiniteDeformation { .. }
-                | StageError::NoRelaxation { .. }
-                | StageError::Artifact(ArtifactError::Foreign { .. })
-        ),
-    }
-}
-
-impl From<PipelineError> for CliError {
-    fn from(error: PipelineError) -> Self {
-        if error.is_interrupt() {
-            return Self::Interrupted;
-        }
-        if is_input(&error) { Self::input(error) } else { Self::failure(error) }
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{note, write_file};
 use super::run_folder;
-use crate::report::ReportError;
 use crate::report::html::{Origin, document};
 use clap::Args;
 use std::path::PathBuf;
@@ -47,16 +46,5 @@ impl Report {
         write_file(&path, self.force, |out| out.write_all(text.as_bytes()))?;
         note(quiet, format_args!("report in {}", path.display()));
         Ok(())
-    }
-}
-
-impl From<ReportError> for CliError {
-    fn from(error: ReportError) -> Self {
-        match error {
-            ReportError::Figure { .. } => Self::failure(error),
-            ReportError::Artifact(_) | ReportError::Stage(_) | ReportError::Empty { .. } => {
-                Self::input(error)
-            }
-        }
     }
 }

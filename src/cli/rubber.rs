@@ -104,7 +104,7 @@ impl Fit {
     fn run(&self, quiet: bool) -> Result<(), CliError> {
         self.check()?;
         let factor = self.kind.factor(self.poisson_ratio);
-        let sweeps = read_sweeps(&self.sweep, factor).map_err(CliError::input)?;
+        let sweeps = read_sweeps(&self.sweep, factor)?;
         let options = FitOptions { terms: self.terms, reference_c: self.reference_temperature_c };
         let fit = fit_sweeps(&sweeps, &options).map_err(|error| self.refusal(error))?;
         for warning in warnings(&fit) {
@@ -171,13 +171,13 @@ impl Fit {
     }
 
     fn name(&self) -> String {
-        let of_file = || self.to.file_stem().map(|name| name.to_string_lossy().into_owned());
+        let of_file = || self.to.file_stem().map(crate::files::name::text);
         self.name.clone().or_else(of_file).unwrap_or_else(|| "rubber".into())
     }
 }
 
 fn file_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    crate::files::name::text(path.file_name().unwrap_or(path.as_os_str()))
 }
 
 /// What a user should know before using the rubber.

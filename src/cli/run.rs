@@ -14,6 +14,7 @@ use super::recipe_options::{RecipeOptions, TakeOver};
 use super::sweep::{claim_sweep, note_recipes, tell};
 use super::{CliError, values};
 use crate::artifact::{Manifest, RunFolder, RunView};
+use crate::files::name::path_text;
 use crate::pipeline::{Event, PipelineError, Ready, Selection};
 use crate::recipe::Recipe;
 use crate::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
@@ -52,7 +53,7 @@ pub(super) struct Run {
     #[command(flatten)]
     folder: TakeOver,
     /// Number of threads; all cores if not given. The numbers do not depend on it.
-    #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
+    #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     threads: Option<usize>,
     /// Print what was done as JSON.
     #[arg(long)]
@@ -133,7 +134,7 @@ impl Run {
             })?;
         if self.json {
             let stages = summaries.into_inner().unwrap_or_default();
-            return print(&json(&serde_json::json!({ "out": out, "stages": stages }))?);
+            return print(&json(&serde_json::json!({ "out": path_text(&out), "stages": stages }))?);
         }
         note(quiet, format_args!("results in {}", out.display()));
         Ok(())
@@ -166,12 +167,12 @@ impl Run {
         let manifest = sweep::run(&recipe, out, watch, &|case, event| tell(quiet, case, &event));
         bar.finish();
         let manifest = manifest?;
-        let cases = recipe.cases().map_err(CliError::input)?;
+        let cases = recipe.cases()?;
         note_recipes(&sweep::Layout::new(out), &cases)?;
         if self.json {
             let seconds = manifest.seconds;
             return print(&json(
-                &serde_json::json!({ "out": out, "cases": cases.len(), "seconds": seconds }),
+                &serde_json::json!({ "out": path_text(out), "cases": cases.len(), "seconds": seconds }),
             )?);
         }
         let (count, tables) = (cases.len(), out.join(sweep::STAGE));

@@ -65,7 +65,10 @@ impl Man {
             command = found.ok_or_else(|| {
                 let known: Vec<&str> =
                     command.get_subcommands().map(clap::Command::get_name).collect();
-                CliError::input(format!("there is no command {name}: {}", known.join(", ")))
+                CliError::input(format!(
+                    "there is no command {name}; {}",
+                    super::values::meant(name, &known)
+                ))
             })?;
         }
         let mut text = Vec::new();

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::interrupt::Interrupt;
-use super::output::{already_exists, note, print, write_file};
+use super::output::{already_exists, note, print, significant, write_file};
 use super::{CliError, values};
+use crate::error_kind::HasKind;
 use crate::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
 
 /// All scans are held in memory, 16 bytes a point.
@@ -123,15 +124,43 @@ impl SpecimenOptions {
     }
 }
 
-/// The parameters are checked in SI under the keys of a recipe.
-#[derive(Debug, thiserror::Error)]
-#[error("no scans can be made from these options (keys and values below as in a recipe, in SI)")]
-struct Impossible(#[source] SynthesisError);
+/// The options of lengths, which are checked in m, with their units in m.
+const LENGTHS: [(&str, &str, &str, f64); 8] = [
+    ("length_m", "--length-mm", "mm", 1e-3),
+    ("spacing_m", "--spacing-um", "um", 1e-6),
+    ("outer_regime.crossover_lag_m", "--crossover-lag-mm", "mm", 1e-3),
+    ("parallel_correlation_length_m", "--parallel-correlation-length-mm", "mm", 1e-3),
+    ("perpendicular_correlation_length_m", "--perpendicular-correlation-length-mm", "mm", 1e-3),
+    ("spot_diameter_m", "--spot-diameter-um", "um", 1e-6),
+    ("noise_m", "--noise-um", "um", 1e-6),
+    ("missing_run_length_m", "--missing-run-length-um", "um", 1e-6),
+];
+
+/// The error under the name of the option, with the value in its unit.
+fn impossible(error: SynthesisError) -> CliError {
+    let SynthesisError::OutOfRange { parameter, value, allowed } = &error else {
+        return CliError::of(error.kind(), format!("{error} (keys of a recipe, lengths in m)"));
+    };
+    if let Some((_, option, unit, metres)) = LENGTHS.iter().find(|known| known.0 == *parameter) {
+        let mut typed = significant(value / metres);
+        if typed.contains('.') && !typed.contains('e') {
+            typed = typed.trim_end_matches('0').trim_end_matches('.').to_owned();
+        }
+        let in_metres =
+            if allowed.contains(|c: char| ('1'..='9').contains(&c)) { " m" } else { "" };
+        return CliError::input(format!(
+            "{option} is {typed} {unit}: it must be {allowed}{in_metres}"
+        ));
+    }
+    let name = parameter.strip_prefix("outer_regime.").unwrap_or(parameter);
+    let outer = if name == *parameter { "" } else { "outer-" };
+    let option = format!("--{outer}{}", name.replace('_', "-"));
+    CliError::input(format!("{option} is {value}: it must be {allowed}"))
+}
 
 impl Synth {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         let parameters = self.specimen.parameters();
-        let impossible = |error| CliError::input(Impossible(error));
         parameters.validate().map_err(impossible)?;
         let total = parameters.scans as f64 * (parameters.length / parameters.spacing);
         if total > MAX_TOTAL_POINTS {
@@ -146,9 +175,7 @@ impl Synth {
         if let Some(path) = present.filter(|_| !self.force) {
             return Err(already_exists(&path));
         }
-        fs::create_dir_all(&self.out).map_err(|error| {
-            CliError::failure(format!("cannot create the folder {}: {error}", self.out.display()))
-        })?;
+        fs::create_dir_all(&self.out).map_err(|error| CliError::no_folder(&self.out, &error))?;
         let interrupt = Interrupt::install()?;
         for scan in &scans {
             interrupt.check()?;

@@ -5,6 +5,8 @@ use std::str::FromStr;
 use serde::de::{DeserializeOwned, value::Error};
 use serde::de::{IntoDeserializer, value::StrDeserializer};
 
+use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
+use crate::files::nearest;
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
 
 /// A number that is finite; `NaN` and `inf` are no quantities.
@@ -12,11 +14,17 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     let number = text.trim();
     match number.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("`{number}` is no finite number")),
+        Ok(_) => Err(format!("`{number}` is not a finite number")),
         Err(_) if number.contains(',') => {
-            Err(format!("`{number}` is no number; the decimal mark is a point"))
+            Err(format!("`{number}` is not a number: the decimal mark is a point"))
         }
-        Err(_) => Err(format!("`{number}` is no number")),
+        Err(_) if number.ends_with('%') => {
+            Err(format!("`{number}` is not a number: give a fraction (5 % is 0.05)"))
+        }
+        Err(_) if number.starts_with(|c: char| c.is_ascii_digit()) => Err(format!(
+            "`{number}` is not a number: give it without a unit, in the unit of the option"
+        )),
+        Err(_) => Err(format!("`{number}` is not a number")),
     }
 }
 
@@ -24,7 +32,7 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 => Ok(value),
-        value => Err(format!("{value} is not positive")),
+        _ => Err(format!("{} is not positive", text.trim())),
     }
 }
 
@@ -34,7 +42,7 @@ pub(super) fn count<T: FromStr>(text: &str) -> Result<T, String> {
     match text.parse() {
         Ok(value) if digits => Ok(value),
         _ if digits => Err(format!("{text} is too large")),
-        _ => Err(format!("`{text}` is no whole number of 0 or more")),
+        _ => Err(format!("`{text}` is not a whole number of 0 or more, such as 1000")),
     }
 }
 
@@ -50,16 +58,24 @@ pub(super) fn channel(text: &str) -> Result<usize, String> {
 pub(super) fn fraction(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if value > 0.0 && value < 1.0 => Ok(value),
-        value => Err(format!("{value} is not between 0 and 1 (5 % is 0.05)")),
+        _ => Err(format!("{} is not between 0 and 1 (5 % is 0.05)", text.trim())),
     }
 }
 
-/// A relative accuracy, from that of double precision up to a half.
+/// A relative accuracy within [`TOLERANCES`].
 pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     match finite(text)? {
-        value if (1e-8..=0.5).contains(&value) => Ok(value),
-        value => Err(format!("{value} is not between 1e-8 and 0.5 (0.1 % is 0.001)")),
+        value if TOLERANCES.contains(&value) => Ok(value),
+        _ => Err(format!("{} is not {TOLERANCES_IN_WORDS}", text.trim())),
     }
+}
+
+/// Which of the known names was meant, else all of them.
+pub(super) fn meant(name: &str, known: &[&str]) -> String {
+    nearest(name, known).map_or_else(
+        || format!("there are {}", known.join(", ")),
+        |nearest| format!("did you mean `{nearest}`?"),
+    )
 }
 
 /// `nm`, `um`, `mm` or `m`.

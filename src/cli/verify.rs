@@ -247,6 +247,12 @@ fn folders(path: &Path) -> Result<Vec<PathBuf>, CliError> {
 
 fn entries(path: &Path) -> Result<Vec<PathBuf>, CliError> {
     let failed = |error| CliError::input(format!("cannot read {}: {error}", path.display()));
+    if path.is_file() {
+        let path = path.display();
+        return Err(CliError::input(format!(
+            "{path} is a file: give the folder of a run, such as runs/asphalt"
+        )));
+    }
     let entries = fs::read_dir(path).map_err(failed)?;
     let mut entries: Vec<PathBuf> =
         entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect::<Result<_, CliError>>()?;

@@ -26,6 +26,30 @@ impl SlidingContact {
         fraction: f64,
         tolerance: f64,
     ) -> Result<ContactSolution, ContactError> {
+        let nearest = self.solve_near_area(fraction, tolerance)?;
+        let found = nearest.contact_area_fraction;
+        if (found / fraction - 1.0).abs() <= tolerance {
+            return Ok(nearest);
+        }
+        Err(ContactError::AreaNotReached {
+            wanted: fraction,
+            found,
+            pressure: nearest.mean_pressure,
+            points: self.points(),
+        })
+    }
+
+    /// The contact whose area is the nearest to `fraction` that was found: to a relative `tolerance` of the
+    /// area if the grid has such a contact. On a grid the area jumps where the contact of a lossy rubber
+    /// spreads from one point to the next; whether the nearest one is near enough is for the caller to say.
+    ///
+    /// # Errors
+    /// As [`Self::solve_for_area`]; [`ContactError::AreaNotReached`] for a flat profile only.
+    pub fn solve_near_area(
+        &mut self,
+        fraction: f64,
+        tolerance: f64,
+    ) -> Result<ContactSolution, ContactError> {
         check(fraction, tolerance)?;
         let full = self.smallest_full_contact_pressure();
         if full <= 0.0 {
@@ -110,17 +134,7 @@ impl Search<'_> {
     }
 
     fn finish(self) -> Result<ContactSolution, ContactError> {
-        let best = self.best.expect("at least one contact has been solved");
-        let found = best.contact_area_fraction;
-        if (found / self.fraction - 1.0).abs() <= self.tolerance {
-            return Ok(best);
-        }
-        Err(ContactError::AreaNotReached {
-            wanted: self.fraction,
-            found,
-            pressure: best.mean_pressure,
-            points: self.contact.points(),
-        })
+        Ok(self.best.expect("at least one contact has been solved"))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Friction over contact area, from as few pressures as the accuracy needs.
 
 use super::refine::GridError;
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::interpolation::CubicHermite;
 
 /// One solved pressure on the way to a curve.
@@ -65,6 +66,16 @@ pub enum CurveError<E> {
         /// Solves so far.
         solves: usize,
     },
+}
+
+impl<E: HasKind + 'static> HasKind for CurveError<E> {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Solve(source) => source.kind(),
+            Self::Targets(_) => ErrorKind::Input,
+            Self::NotSmooth { .. } | Self::NotBracketed { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// Logarithmic distance in area to the nearest solved point, and width of the gap between solved

@@ -1,5 +1,7 @@
 //! What can go wrong in a contact problem.
 
+use crate::error_kind::{ErrorKind, HasKind};
+
 /// Why there is no solution to report.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ContactError {
@@ -59,4 +61,13 @@ pub enum ContactError {
         /// Grid points.
         points: usize,
     },
+}
+
+impl HasKind for ContactError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Rubber(_) | Self::OutOfRange { .. } | Self::BadHeight { .. } => ErrorKind::Input,
+            Self::NotConverged { .. } | Self::AreaNotReached { .. } => ErrorKind::Failure,
+        }
+    }
 }

@@ -14,6 +14,8 @@
 //! hundred random surfaces the true error of friction is below the estimate in 98, and a fifth of
 //! it in the median; `tests/convergence` demands 95 and a tenth.
 
+use crate::error_kind::{ErrorKind, HasKind};
+
 /// Doublings that the estimate looks back on.
 const DIFFERENCES: usize = 3;
 /// Fall of the error of friction with each doubling.
@@ -28,6 +30,17 @@ pub const AREA_WEIGHT: f64 = 0.25;
 pub(crate) const LEAST_CONTACT_POINTS: f64 = 2.0;
 /// Friction below this matters to nobody: relative tolerances refer to it there.
 pub const LEAST_FRICTION: f64 = 1e-4;
+
+/// Relative accuracies that can be asked for, everywhere. Residuals are below 1e-10 and an error is estimated
+/// from differences of solves, which below 1e-8 are rounding; above a half not one digit is right. Whether a
+/// problem reaches its accuracy is for the solver to say, with the error that it has reached.
+pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-8..=0.5;
+/// The same in a message.
+pub const TOLERANCES_IN_WORDS: &str = "between 1e-8 and 0.5 (0.1 % is 0.001)";
+/// Shares of such an accuracy that may go to grids, interpolation or realisations alone: a quarter and more.
+pub const SHARES: std::ops::RangeInclusive<f64> = 1e-9..=0.5;
+/// The same in a message.
+pub const SHARES_IN_WORDS: &str = "between 1e-9 and 0.5 (0.1 % is 0.001)";
 
 /// A contact on one of several grids.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,6 +110,15 @@ pub enum RefineError<E> {
         /// Most points that may be tried.
         most: usize,
     },
+}
+
+impl<E: HasKind + 'static> HasKind for RefineError<E> {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Solve(source) => source.kind(),
+            Self::NotReached { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// How far and how finely grids are refined.

@@ -1,5 +1,6 @@
 //! What can go wrong in a finite-deformation contact.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::rubber::RubberError;
 
 /// Why there is no solution to report.
@@ -46,6 +47,15 @@ pub enum FemError {
         /// Columns of the mesh.
         columns: usize,
     },
+}
+
+impl HasKind for FemError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Rubber(_) | Self::OutOfRange { .. } => ErrorKind::Input,
+            Self::PathEnded { .. } | Self::AreaNotReached { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// The last converged point of a path of growing pressure.

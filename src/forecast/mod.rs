@@ -13,6 +13,7 @@ pub use micro::MicroForecast;
 pub use scales::{ScaleForecast, ScaleModel};
 
 use crate::artifact::{ArtifactError, RunView};
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Chain, Recipe, Violation, Work};
 use crate::rubber::Rubber;
@@ -54,6 +55,19 @@ pub enum ForecastError {
     /// The study of one sine wave has no scales to choose models for.
     #[error("[sinusoid] solves what it lists, with the models it lists: there is nothing to plan")]
     Sinusoid,
+}
+
+impl HasKind for ForecastError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Pipeline(source) => source.kind(),
+            Self::Stage(source) => source.kind(),
+            Self::Artifact(source) => source.kind(),
+            Self::Folder(_) => ErrorKind::Failure,
+            Self::Recipe(source) => source.kind(),
+            Self::Sinusoid => ErrorKind::Input,
+        }
+    }
 }
 
 /// The half-space curves of one approximation at one speed.

@@ -1,6 +1,7 @@
 //! What can go wrong between the scales.
 
 use crate::contact::ContactError;
+use crate::error_kind::{ErrorKind, HasKind};
 
 /// Why samples are no local law, or why a law gives no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -68,6 +69,20 @@ pub enum LawError {
     },
 }
 
+impl HasKind for LawError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            // Laws are made of computed samples: nothing in them was typed.
+            Self::Length { .. }
+            | Self::Touch { .. }
+            | Self::Pressure { .. }
+            | Self::Separation { .. }
+            | Self::BeyondSamples { .. }
+            | Self::NotAPressure { .. } => ErrorKind::Failure,
+        }
+    }
+}
+
 /// Why the macro surface has no solution to report.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SoftContactError {
@@ -100,4 +115,14 @@ pub enum SoftContactError {
         /// Newton iterations on the finest grid.
         iterations: usize,
     },
+}
+
+impl HasKind for SoftContactError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Contact(source) => source.kind(),
+            Self::Law { source, .. } => source.kind(),
+            Self::NotConverged { .. } => ErrorKind::Failure,
+        }
+    }
 }

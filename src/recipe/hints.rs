@@ -1,41 +1,66 @@
-//! What helps to find a mistake in a recipe: its line, and the key that was meant.
+//! Where a mistake stands in a recipe, and what was typed there.
 
 use super::Violation;
+use crate::scans::ScanProblem;
+use crate::surface::ConditioningError;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Names less alike than this are no misspellings of each other (Jaro and Winkler, 1 being equal).
-const ALIKE: f64 = 0.8;
+/// Longer values are shown up to here.
+const LONGEST_VALUE: usize = 80;
 
-/// The known key that an unknown one looks like most, from the message of the parser, which quotes the unknown
-/// one first and then the known ones.
-pub(super) fn nearest_key(message: &str) -> String {
-    let mut quoted = message.split('`').skip(1).step_by(2);
-    let (true, Some(unknown)) = (message.starts_with("unknown "), quoted.next()) else {
-        return String::new();
-    };
-    let alike = |known: &&str| strsim::jaro_winkler(unknown, known);
-    quoted
-        .filter(|known| alike(known) >= ALIKE)
-        .max_by(|a, b| alike(a).total_cmp(&alike(b)))
-        .map_or_else(String::new, |known| format!("\ndid you mean `{known}`?"))
+/// Number of the line that a violation speaks of, from 1, and the value there as it was typed; none where the
+/// recipe has no such key and the value is that of a default.
+pub(super) fn place(text: &str, violation: &Violation) -> (Option<usize>, Option<String>) {
+    let found = DeTable::parse(text).ok().and_then(|document| {
+        let key = key(violation)?;
+        let start = start(document.get_ref(), &key)?;
+        let typed = value(document.get_ref(), &key).and_then(|span| text.get(span));
+        Some((1 + text[..start].matches('\n').count(), typed.map(shortened)))
+    });
+    found.map_or((None, None), |(line, typed)| (Some(line), typed))
 }
 
-/// Number of the line that a violation speaks of, from 1; none where the recipe has no such key and the
-/// value is that of a default.
-pub(super) fn line(text: &str, violation: &Violation) -> Option<usize> {
+/// The key of a violation with its section.
+fn key(violation: &Violation) -> Option<String> {
     let key = match violation {
         Violation::Demand { key, .. } => *key,
         Violation::SectionBesideSinusoid { section } => *section,
         Violation::HybridWithoutMicro => "hybrid",
+        Violation::Text(ScanProblem::Description { key, .. }) => {
+            return Some(format!("ingest.text.{key}"));
+        }
         Violation::Text(_) => "ingest.text",
+        Violation::Conditioning(ConditioningError::Parameter { key, .. }) => {
+            return Some(format!("ingest.conditioning.{key}"));
+        }
         Violation::Conditioning(_) => "ingest.conditioning",
         Violation::SeveralCases { .. } | Violation::SweepOfSinusoid => "sweep",
+        Violation::Missing { key, .. } => *key,
         Violation::MissingSection { .. } => return None,
     };
-    let document = DeTable::parse(text).ok()?;
-    let start = start(document.get_ref(), key)?;
-    Some(1 + text[..start].matches('\n').count())
+    Some(key.to_owned())
+}
+
+/// A value on one line, cut where it is long.
+fn shortened(value: &str) -> String {
+    let words = value.split_whitespace().collect::<Vec<_>>().join(" ");
+    match words.char_indices().nth(LONGEST_VALUE) {
+        Some((end, _)) => format!("{} ...", &words[..end]),
+        None => words,
+    }
+}
+
+/// The bytes of the value of a dotted key; none for several keys and for sections.
+fn value(table: &DeTable, key: &str) -> Option<std::ops::Range<usize>> {
+    let (first, rest) =
+        key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
+    let value = table.get(first)?;
+    match (rest, value.get_ref()) {
+        (Some(rest), DeValue::Table(inner)) => self::value(inner, rest),
+        (Some(_), _) | (None, DeValue::Table(_)) => None,
+        (None, _) => Some(value.span()),
+    }
 }
 
 /// Where a dotted key begins, in bytes; of several in parentheses, the first in the text.
@@ -48,8 +73,11 @@ fn start(table: &DeTable, key: &str) -> Option<usize> {
     let (name, value): (&Spanned<_>, &Spanned<DeValue>) = table.get_key_value(first)?;
     match (rest, value.get_ref()) {
         (None, _) => Some(name.span().start),
-        (Some(rest), DeValue::Table(inner)) => start(inner, rest),
-        (Some(_), _) => None,
+        // A key that is missing is missed in its section.
+        (Some(rest), DeValue::Table(inner)) => {
+            Some(start(inner, rest).unwrap_or(name.span().start))
+        }
+        (Some(_), _) => Some(name.span().start),
     }
 }
 
@@ -60,8 +88,12 @@ mod tests {
     const RECIPE: &str = "title = 'x'\n\n[bem]\nrubber = 'r'\nspeeds_mm_s = [\n    1.0,\n]\n\n\
                           [ingest]\nconditioning.form = 'mean'\ntext = { x_unit = 'mm' }\n";
 
+    fn line(violation: &Violation) -> Option<usize> {
+        place(RECIPE, violation).0
+    }
+
     fn demand(key: &'static str) -> Option<usize> {
-        line(RECIPE, &Violation::Demand { key, value: String::new(), demand: "" })
+        line(&Violation::Demand { key, value: String::new(), demand: "" })
     }
 
     #[test]
@@ -72,22 +104,16 @@ mod tests {
         assert_eq!(demand("ingest.conditioning.form"), Some(10));
         assert_eq!(demand("ingest.text.x_unit"), Some(11));
         assert_eq!(demand("bem.(tolerance, speeds_mm_s, rubber)"), Some(4));
-        assert_eq!(demand("bem.tolerance"), None);
-        assert_eq!(demand("bem.rubber.name"), None);
-        assert_eq!(line(RECIPE, &Violation::MissingSection { section: "realise" }), None);
+        // Keys that are not there are missed in their section.
+        assert_eq!(demand("bem.tolerance"), Some(3));
+        assert_eq!(demand("realise.seed"), None);
+        let typed =
+            |key| place(RECIPE, &Violation::Demand { key, value: String::new(), demand: "" }).1;
+        assert_eq!(typed("bem.speeds_mm_s").as_deref(), Some("[ 1.0, ]"));
+        assert_eq!(typed("ingest.text.x_unit").as_deref(), Some("'mm'"));
+        assert_eq!(typed("bem"), None);
+        assert_eq!(line(&Violation::MissingSection { section: "realise" }), None);
         let beside = Violation::SectionBesideSinusoid { section: "bem" };
-        assert_eq!(line(RECIPE, &beside), Some(3));
-    }
-
-    #[test]
-    fn only_names_that_are_alike_are_proposed() {
-        let message = |unknown: &str| {
-            nearest_key(&format!(
-                "unknown field `{unknown}`, expected one of `rubber`, `tolerance`"
-            ))
-        };
-        assert_eq!(message("tolerence"), "\ndid you mean `tolerance`?");
-        assert_eq!(message("friction"), "");
-        assert_eq!(nearest_key("invalid type: `rubbe`, expected `rubber`"), "");
+        assert_eq!(line(&beside), Some(3));
     }
 }

@@ -18,7 +18,8 @@ pub struct Sweep {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub specimens: Vec<Specimen>,
     /// Rubber files, in place of `bem.rubber`; tables know them by their file names without extension.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", with = "crate::files::name::paths")]
+    #[schemars(with = "Vec<String>")]
     pub rubbers: Vec<PathBuf>,
     /// Temperatures in °C, in place of `bem.temperature_c`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -35,6 +36,8 @@ pub struct Specimen {
     /// Its name in tables and folders.
     pub name: String,
     /// Its scan files, and folders of which every file is a scan of it.
+    #[serde(with = "crate::files::name::paths")]
+    #[schemars(with = "Vec<String>")]
     pub scans: Vec<PathBuf>,
 }
 
@@ -72,7 +75,7 @@ impl Sweep {
         let named = "names of letters, digits, `.`, `_` and `-`, each once: they become folders";
         demand(are_names(&names), "sweep.specimens", &names, named)?;
         let scans = self.specimens.iter().all(|specimen| !specimen.scans.is_empty());
-        demand(scans, "sweep.specimens", &names, "scans for each of them")?;
+        demand(scans, "sweep.specimens", &names, "specimens with one scan or more each")?;
         let rubbers: Vec<String> = self.rubbers.iter().map(|path| stem(path)).collect();
         let rubbers: Vec<&str> = rubbers.iter().map(String::as_str).collect();
         let named = "file names of letters, digits, `.`, `_` and `-`, each once: they name tables and folders";
@@ -84,8 +87,13 @@ impl Sweep {
         let valid = seeds.iter().all(|seed| *seed < 1 << 63) && once(seeds);
         demand(valid, "sweep.seeds", seeds, "numbers below 2^63, each once")?;
         let cases = self.count();
-        let least = "at least one list, and at most a million cases";
-        demand((1..=MOST_CASES).contains(&cases) && *self != Self::default(), "sweep", cases, least)
+        let least = "one list or more, and a million cases at most";
+        demand(
+            (1..=MOST_CASES).contains(&cases) && *self != Self::default(),
+            "sweep",
+            format_args!("{cases} cases"),
+            least,
+        )
     }
 
     /// Number of combinations.
@@ -169,8 +177,10 @@ impl Recipe {
         if self.sweep.is_some() {
             sweep.check()?;
         }
-        let either = |listed: bool, single: bool, key, list| {
-            demand(listed != single, key, single_or_list(listed), list)
+        let either = |listed: bool, single: bool, key, list| match (listed, single) {
+            (false, false) => Err(Violation::Missing { key, advice: list }),
+            (true, true) => demand(false, key, "given", "left out beside the list in [sweep]"),
+            _ => Ok(()),
         };
         if let Some(ingest) = &self.ingest {
             // None at all may still come from the command line.
@@ -179,23 +189,19 @@ impl Recipe {
         }
         if let Some(bem) = &self.bem {
             let listed = !sweep.rubbers.is_empty();
-            let wanted = "a rubber file here or files in sweep.rubbers, and not both";
+            let wanted = "give a rubber file, or files in sweep.rubbers";
             either(listed, bem.rubber != Path::new(""), "bem.rubber", wanted)?;
             let both = !sweep.temperatures_c.is_empty() && bem.temperature_c.is_some();
             let wanted = "left out beside sweep.temperatures_c";
             demand(!both, "bem.temperature_c", bem.temperature_c, wanted)?;
         }
         if let Some(realise) = &self.realise {
-            let wanted = "a seed here or several in sweep.seeds, and not both";
+            let wanted =
+                "give a whole number from which the phases are drawn, or several in sweep.seeds";
             either(!sweep.seeds.is_empty(), realise.seed.is_some(), "realise.seed", wanted)?;
         }
         Ok(())
     }
-}
-
-/// What a message shows in place of the value.
-fn single_or_list(listed: bool) -> &'static str {
-    if listed { "given twice" } else { "not given" }
 }
 
 fn folder<const N: usize>(parts: [&Option<String>; N]) -> PathBuf {
@@ -204,7 +210,7 @@ fn folder<const N: usize>(parts: [&Option<String>; N]) -> PathBuf {
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    crate::files::name::text(path.file_stem().unwrap_or_default())
 }
 
 fn once<T: PartialEq>(values: &[T]) -> bool {
@@ -271,11 +277,14 @@ mod tests {
         assert!(change("'b.toml'", "'other/a.toml'").contains("sweep.rubbers"));
         assert!(change("name = 'B'", "name = 'a'").contains("sweep.specimens"));
         assert!(change("name = 'B'", "name = '../B'").contains("sweep.specimens"));
-        assert!(change("['scans/A']", "[]").contains("scans for each of them"));
+        assert!(change("['scans/A']", "[]").contains("one scan or more each"));
         assert!(change("seeds = [1, 2]", "").contains("realise.seed"));
         assert!(change("rubbers = ['a.toml', 'b.toml']", "").contains("bem.rubber"));
         assert!(change("[20, -5.5]", "[20, nan]").contains("sweep.temperatures_c"));
         let twice = parse(&format!("rubber = 'c.toml'\n{ALL}")).unwrap_err();
-        assert!(twice.contains("bem.rubber") && twice.contains("given twice"), "{twice}");
+        assert!(
+            twice.contains("bem.rubber") && twice.contains("left out beside the list"),
+            "{twice}"
+        );
     }
 }

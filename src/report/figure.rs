@@ -1,12 +1,19 @@
 //! Figures in SVG.
 
 use super::FrictionTable;
+use crate::error_kind::{ErrorKind, HasKind};
 use plotters::prelude::*;
 
 /// A figure that could not be drawn.
 #[derive(Debug, thiserror::Error)]
 #[error("the figure could not be drawn: {0}")]
 pub struct FigureError(pub(crate) String);
+
+impl HasKind for FigureError {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Failure
+    }
+}
 
 /// Distinct for readers who do not see all colours (Okabe & Ito).
 pub(crate) const COLOURS: [RGBColor; 6] = [

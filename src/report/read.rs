@@ -2,6 +2,7 @@
 
 use super::FigureError;
 use crate::artifact::{ArtifactError, Metadata, Row, RunView};
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::stages::StageError;
 
 /// A figure or a report that cannot be made.
@@ -27,6 +28,17 @@ pub enum ReportError {
         /// The run folder.
         folder: String,
     },
+}
+
+impl HasKind for ReportError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Artifact(source) => source.kind(),
+            Self::Stage(source) => source.kind(),
+            Self::Figure { .. } => ErrorKind::Failure,
+            Self::Empty { .. } => ErrorKind::Input,
+        }
+    }
 }
 
 /// The rows of a table, or none if the run has no such result.

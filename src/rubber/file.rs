@@ -23,6 +23,8 @@
 //! wlf = { c1 = 8.86, c2_k = 101.6 }        # or: arrhenius = { activation_energy_kj_mol = 90.0 }
 //! ```
 
+use crate::error_kind::{ErrorKind, HasKind};
+use crate::files::{self, TomlError};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -38,21 +40,27 @@ const TABLE_2_1: &str = include_str!("../../data/rubber/table_2_1.toml");
 /// Why a file is no rubber.
 #[derive(Debug, thiserror::Error)]
 pub enum RubberFileError {
-    /// The operating system refused.
-    #[error("cannot read the rubber {}", .path.display())]
+    /// It cannot be read.
+    #[error("cannot read the rubber {}: {source}{}", .path.display(), files::advice(.source))]
     Unreadable {
         /// The file.
         path: PathBuf,
         /// What the operating system answered.
         source: std::io::Error,
     },
-    /// The text is not the TOML of a rubber; the source names line and key.
-    #[error("{} does not describe a rubber", .path.display())]
+    /// The text is not the TOML of a rubber.
+    #[error(
+        "rubber {}{problem}{}",
+        .path.display(),
+        if *.is_recipe { "\n  this is a recipe: give the file of the rubber" } else { "" }
+    )]
     Syntax {
         /// The file.
         path: PathBuf,
-        /// What the TOML reader stumbled over.
-        source: toml::de::Error,
+        /// Line, key and what to write.
+        problem: TomlError,
+        /// Whether it is a recipe.
+        is_recipe: bool,
     },
     /// The numbers are not those of a rubber.
     #[error("{} does not describe a rubber (values below in Pa and s)", .path.display())]
@@ -91,6 +99,19 @@ pub enum RubberFileError {
         /// The range in Hz.
         range: [f64; 2],
     },
+}
+
+impl HasKind for RubberFileError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Unreadable { .. }
+            | Self::Syntax { .. }
+            | Self::Invalid { .. }
+            | Self::Temperature { .. }
+            | Self::Laws { .. }
+            | Self::MeasuredRange { .. } => ErrorKind::Input,
+        }
+    }
 }
 
 /// A rubber with what is known of its measurement.
@@ -226,7 +247,7 @@ pub fn read_rubber(path: impl AsRef<Path>) -> Result<Rubber, RubberFileError> {
 /// As [`read_rubber`].
 pub fn read_rubber_data(path: impl AsRef<Path>) -> Result<RubberData, RubberFileError> {
     let path = path.as_ref();
-    let text = std::fs::read_to_string(path)
+    let text = files::read_settings(path)
         .map_err(|source| RubberFileError::Unreadable { path: path.to_path_buf(), source })?;
     parse_rubber_data(path, &text)
 }
@@ -262,8 +283,13 @@ pub fn parse_rubber(path: &Path, text: &str) -> Result<Rubber, RubberFileError> 
 /// # Errors
 /// Those of [`read_rubber`] but [`RubberFileError::Unreadable`].
 pub fn parse_rubber_data(path: &Path, text: &str) -> Result<RubberData, RubberFileError> {
-    let file: RubberFile = toml::from_str(text)
-        .map_err(|source| RubberFileError::Syntax { path: path.to_path_buf(), source })?;
+    let file: RubberFile = toml::from_str(text).map_err(|error| RubberFileError::Syntax {
+        path: path.to_path_buf(),
+        problem: TomlError::new(text, &error),
+        is_recipe: ["[approximate]", "[realise]", "[bem]", "[sinusoid]"]
+            .iter()
+            .any(|section| text.contains(section)),
+    })?;
     let measured = file.measured_hz.map(|range| measured_range(path, range)).transpose()?;
     let temperature = file.temperature.as_ref().map(|entry| dependence(path, entry)).transpose()?;
     let rubber = Rubber::from(file);
@@ -316,8 +342,8 @@ mod tests {
     /// Message and source of the error, as a user sees them.
     fn failure(text: &str) -> String {
         let error = parse(text).unwrap_err();
-        let source = std::error::Error::source(&error).unwrap();
-        format!("{error}: {source}")
+        let source = std::error::Error::source(&error).map(ToString::to_string);
+        format!("{error}: {}", source.unwrap_or_default())
     }
 
     #[test]
@@ -348,13 +374,13 @@ mod tests {
     #[test]
     fn mistakes_are_named_by_file_line_and_key() {
         let unknown = failure(&VALID.replace("relaxation_time_s", "relaxation_time_ms"));
-        assert!(unknown.contains("tread.toml does not describe a rubber"), "{unknown}");
-        assert!(unknown.contains("line 6"), "{unknown}");
-        assert!(unknown.contains("unknown field `relaxation_time_ms`"), "{unknown}");
+        assert!(unknown.contains("rubber tread.toml, line 6"), "{unknown}");
+        let meant = "unknown key `relaxation_time_ms`; did you mean `relaxation_time_s`?";
+        assert!(unknown.contains(meant), "{unknown}");
         let absent = failure(&VALID.replace("poisson_ratio = 0.5\n", ""));
-        assert!(absent.contains("missing field `poisson_ratio`"), "{absent}");
+        assert!(absent.contains("the key `poisson_ratio` is missing"), "{absent}");
         let text = failure(&VALID.replace("= 4.0", "= '4.0'"));
-        assert!(text.contains("line 2") && text.contains("expected f64"), "{text}");
+        assert!(text.contains("line 2") && text.contains("write 4.0, without quotes"), "{text}");
     }
 
     #[test]

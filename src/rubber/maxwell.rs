@@ -1,5 +1,6 @@
 //! Generalised Maxwell model of a linear viscoelastic solid.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -61,6 +62,16 @@ pub enum RubberError {
         /// The largest value it takes.
         limit: f64,
     },
+}
+
+impl HasKind for RubberError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NotPositive { .. } | Self::PoissonRatio { .. } | Self::NotCompressible { .. } => {
+                ErrorKind::Input
+            }
+        }
+    }
 }
 
 impl Rubber {

@@ -1,5 +1,6 @@
 //! Time-temperature superposition: moduli at another temperature by a shift of the frequency.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use std::f64::consts::LN_10;
 
 use serde::Serialize;
@@ -100,6 +101,19 @@ pub enum TemperatureError {
         /// The range in °C.
         range: [f64; 2],
     },
+}
+
+impl HasKind for TemperatureError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NoLaw { .. }
+            | Self::NoTemperature { .. }
+            | Self::BelowPole { .. }
+            | Self::TooFar { .. }
+            | Self::Coefficient { .. }
+            | Self::Range { .. } => ErrorKind::Input,
+        }
+    }
 }
 
 /// More decades than between creep over years and vibrations of molecules.

@@ -1,5 +1,6 @@
 //! What can be wrong with a scan file.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use std::path::Path;
 
 /// A scan file that cannot be read: where, what, and what to do.
@@ -15,6 +16,13 @@ pub struct ScanError {
     /// What is wrong.
     #[source]
     pub problem: ScanProblem,
+}
+
+impl HasKind for ScanError {
+    fn kind(&self) -> ErrorKind {
+        // A scan is a file of the user, whatever is wrong with it.
+        ErrorKind::Input
+    }
 }
 
 impl ScanError {

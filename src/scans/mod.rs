@@ -13,6 +13,7 @@ mod text;
 pub mod text_shape;
 mod thousands;
 
+use crate::files;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -29,15 +30,24 @@ pub const LARGEST_FILE: u64 = 1 << 30;
 /// The bytes of a file of at most [`LARGEST_FILE`] bytes.
 ///
 /// # Errors
-/// Those of the operating system; [`io::ErrorKind::FileTooLarge`] that says what to do, also for
-/// what has no end (`/dev/zero`).
+/// Those of the operating system; [`io::ErrorKind::FileTooLarge`] and, for what is not a plain file,
+/// [`io::ErrorKind::InvalidInput`] or [`io::ErrorKind::IsADirectory`], each with what to do.
 pub fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    admit_size(file.metadata()?.len())?;
+    admit(path)?;
     let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    // A file may grow after its size was asked for.
+    File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     admit_size(bytes.len() as u64)?;
     Ok(bytes)
+}
+
+/// Whether what is at a path is a plain file that [`read_bytes`] reads; it is not opened.
+///
+/// # Errors
+/// As [`read_bytes`].
+pub fn admit(path: &Path) -> io::Result<()> {
+    files::admit(path, u64::MAX)?;
+    admit_size(std::fs::metadata(path)?.len())
 }
 
 /// Whether a file of that many bytes is read.

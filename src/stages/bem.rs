@@ -10,6 +10,7 @@ mod work;
 use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, Watch};
 use crate::artifact::{ArrayDataset, Metadata, Pending, RunView, SolveStore, Storage};
+use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::recipe::{Violation, demand};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
 use curve::FieldSolution;
@@ -30,12 +31,15 @@ use work::Work;
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 4;
 
+const SPEEDS: &str = "one speed or more from 1e-9 to 1e9 mm/s, without repeats";
+
 /// Section `[bem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bem {
     /// Rubber file. Left out beside `sweep.rubbers`.
-    #[serde(default, skip_serializing_if = "is_no_path")]
+    #[serde(default, skip_serializing_if = "is_no_path", with = "crate::files::name::path")]
+    #[schemars(with = "String")]
     pub rubber: PathBuf,
     /// Temperature in °C to which the rubber is shifted; its file needs a `[temperature]` section.
     /// Not set: the moduli as they stand in the file.
@@ -97,17 +101,22 @@ impl Bem {
         let speeds = &self.speeds_mm_s;
         let possible = speeds.iter().all(|v| SPEEDS_MM_S.contains(v));
         let valid = !speeds.is_empty() && possible && no_repeats(speeds);
-        demand(valid, "bem.speeds_mm_s", speeds, "speeds from 1e-9 to 1e9, each once")?;
+        demand(valid, "bem.speeds_mm_s", speeds, SPEEDS)?;
         for (key, areas) in [
             ("bem.area_fractions", &self.area_fractions),
             ("bem.field_area_fractions", &self.field_area_fractions),
         ] {
             let ascending = areas.windows(2).all(|w| w[0] < w[1]);
             let inside = areas.iter().all(|a| *a > 0.0 && *a < 1.0);
-            demand(ascending && inside, key, areas, "ascending, between 0 and 1")?;
+            demand(ascending && inside, key, areas, "ascending, between 0 and 1 (5 % is 0.05)")?;
         }
         let areas = &self.area_fractions;
-        demand(!areas.is_empty(), "bem.area_fractions", areas, "at least one")?;
+        demand(
+            !areas.is_empty(),
+            "bem.area_fractions",
+            areas,
+            "at least one fraction, such as [0.05]",
+        )?;
         let range = areas[0]..=areas[areas.len() - 1];
         let fields = &self.field_area_fractions;
         let within = fields.iter().all(|a| range.contains(a));
@@ -122,11 +131,11 @@ impl Bem {
             ("bem.grid_tolerance", self.grid_tolerance),
         ];
         for (key, tolerance) in tolerances.into_iter().filter_map(|(key, t)| Some((key, t?))) {
-            demand((1e-6..=0.2).contains(&tolerance), key, tolerance, "between 1e-6 and 0.2")?;
+            demand(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
         }
         if let Some(tolerance) = self.average_tolerance {
             let key = "bem.average_tolerance";
-            demand((1e-4..=0.5).contains(&tolerance), key, tolerance, "between 1e-4 and 0.5")?;
+            demand(TOLERANCES.contains(&tolerance), key, tolerance, TOLERANCES_IN_WORDS)?;
         }
         let points = self.points_per_shortest_wavelength;
         let key = "bem.points_per_shortest_wavelength";

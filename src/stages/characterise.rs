@@ -173,7 +173,7 @@ fn demand_ascending(
 ) -> Result<(), Violation> {
     match (lower, upper) {
         (Some(lower), Some(upper)) => {
-            demand(lower < upper, keys, (lower, upper), "the first shorter than the second")
+            demand(lower < upper, keys, (lower, upper), "in ascending order")
         }
         _ => Ok(()),
     }

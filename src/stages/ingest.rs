@@ -18,7 +18,7 @@ use crate::artifact::{
 use crate::recipe::{Violation, demand};
 use crate::scans::file::{CHANNELS, Family, Grid, MapLines, parse_channel};
 use crate::scans::text_shape::TextShape;
-use crate::scans::{TextFormat, admit_size, parse_text, read_bytes};
+use crate::scans::{TextFormat, admit, parse_text, read_bytes};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use faults::fault_rows;
 use picture::write_pictures;
@@ -36,7 +36,8 @@ pub const REVISION: u32 = 5;
 #[serde(deny_unknown_fields)]
 pub struct Ingest {
     /// Scan files, and folders of which every file is a scan. Left out beside `sweep.specimens`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "crate::files::name::paths")]
+    #[schemars(with = "Vec<String>")]
     pub scans: Vec<PathBuf>,
     /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD) are told
     /// by their content and need no description.
@@ -249,15 +250,6 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
         .collect()
 }
 
-/// Before anything is read: a device may have no end, a large file takes long to digest.
-fn admit(path: &Path) -> std::io::Result<()> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("this is no plain file, which is read twice"));
-    }
-    admit_size(metadata.len())
-}
-
 fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
     let io = |source| StageError::ScanIo { path: path.to_owned(), source };
     if !std::fs::metadata(path).map_err(io)?.is_dir() {
@@ -276,7 +268,7 @@ fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
 }
 
 fn scan_name(path: &Path) -> String {
-    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    crate::files::name::text(path.file_stem().unwrap_or(path.as_os_str()))
 }
 
 /// The scan files as inputs of the stage.

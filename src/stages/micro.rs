@@ -8,6 +8,7 @@ use super::bem::{CURVES_FILE, CurveRow};
 use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion, SolveStore};
+use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
@@ -66,7 +67,7 @@ impl Micro {
         demand((16..=1024).contains(&columns), COLUMNS_KEY, columns, "16 to 1024")?;
         let tolerance = self.tolerance;
         let key = "micro.tolerance";
-        demand((1e-6..=0.1).contains(&tolerance), key, tolerance, "between 1e-6 and 0.1")?;
+        demand(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
         let points = self.points_per_shortest_macro_wavelength;
         let key = "micro.points_per_shortest_macro_wavelength";
         demand((4..=4096).contains(&points), key, points, "4 to 4096")

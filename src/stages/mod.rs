@@ -25,6 +25,7 @@ pub mod tables;
 
 use crate::artifact::{ArtifactError, Pending, SchemaVersion};
 use crate::contact::ContactError;
+use crate::error_kind::{ErrorKind, HasKind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -347,6 +348,43 @@ pub enum StageError {
     Interrupted,
 }
 
+impl HasKind for StageError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Artifact(source) => source.kind(),
+            Self::Scan(source) => source.kind(),
+            Self::File(source) => source.kind(),
+            Self::Conditioning(source) => source.kind(),
+            Self::FaultPicture(source) => source.kind(),
+            Self::Parameter(source) => source.kind(),
+            Self::Correlation(source) => source.kind(),
+            Self::Spectrum(source) => source.kind(),
+            Self::Ladder(source) => source.kind(),
+            Self::SineFit { source, .. } => source.kind(),
+            Self::Rubber(source) => source.kind(),
+            Self::Contact { source, .. } => source.kind(),
+            Self::Microscale { source, .. }
+            | Self::FiniteDeformation { source, .. }
+            | Self::Solve { source, .. } => source.kind(),
+            Self::MapLines { .. }
+            | Self::NoTextFormat { .. }
+            | Self::NoScans { .. }
+            | Self::ScanIo { .. }
+            | Self::ScanChanged { .. }
+            | Self::ReservedName { .. }
+            | Self::SameName { .. }
+            | Self::UnequalScans { .. }
+            | Self::NoWaves { .. }
+            | Self::RubberAtFiniteDeformation { .. }
+            | Self::NoMacroscale { .. }
+            | Self::NoRelaxation { .. }
+            | Self::Published { .. } => ErrorKind::Input,
+            Self::NoMicroscale { .. } => ErrorKind::Failure,
+            Self::Interrupted => ErrorKind::Interrupted,
+        }
+    }
+}
+
 /// Why a single solve has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum SolveError {
@@ -387,4 +425,18 @@ pub enum SolveError {
     /// The user's interrupt.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl HasKind for SolveError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Contact(source) => source.kind(),
+            Self::FiniteDeformation(source) => source.kind(),
+            Self::SoftContact(source) => source.kind(),
+            Self::Law(source) => source.kind(),
+            Self::Accuracy { .. } | Self::Unresolved { .. } => ErrorKind::Failure,
+            Self::Artifact(source) => source.kind(),
+            Self::Interrupted => ErrorKind::Interrupted,
+        }
+    }
 }

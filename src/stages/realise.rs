@@ -40,8 +40,10 @@ impl Realise {
         for (key, count) in keys.into_iter().filter_map(|(key, count)| Some((key, count?))) {
             demand((1..=100_000).contains(&count), key, count, "1 to 100000")?;
         }
-        let wanted = "a number, or a `tolerance` that it follows from";
-        demand(self.drawn() > 0, "realise.realisations", 0, wanted)?;
+        if self.drawn() == 0 {
+            let advice = "give a number of surfaces, or a `tolerance` that it follows from";
+            return Err(Violation::Missing { key: "realise.realisations", advice });
+        }
         // TOML's integers are signed.
         let seed = self.seed.unwrap_or_default();
         demand(seed < 1 << 63, "realise.seed", seed, "below 2^63")

@@ -36,6 +36,8 @@ pub const REVISION: u32 = 2;
 #[serde(deny_unknown_fields)]
 pub struct Sinusoid {
     /// Rubber file.
+    #[serde(with = "crate::files::name::path")]
+    #[schemars(with = "String")]
     pub rubber: PathBuf,
     /// Wavelength L of the sine in mm; also the period of the block.
     pub wavelength_mm: f64,

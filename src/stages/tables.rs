@@ -11,6 +11,7 @@ use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
+use crate::files;
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
@@ -20,7 +21,7 @@ pub use models::{MODELS_FILE, ModelRow};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
@@ -53,7 +54,7 @@ impl Tables {
     pub(crate) fn check(&self) -> Result<(), Violation> {
         let theories = &self.theories;
         let once = theories.iter().enumerate().all(|(i, a)| !theories[..i].contains(a));
-        demand(once, "tables.theories", theories, "each theory once")?;
+        demand(once, "tables.theories", theories, "a list without repeats")?;
         self.theory_constants.check()
     }
 }
@@ -72,6 +73,8 @@ pub struct Published {
     #[serde(default)]
     pub model: Model,
     /// CSV file with at least the columns `area_fraction` and `average`.
+    #[serde(with = "crate::files::name::path")]
+    #[schemars(with = "String")]
     pub file: PathBuf,
 }
 
@@ -237,11 +240,20 @@ pub fn inputs(parameters: &Tables) -> Result<Vec<Input>, StageError> {
     let input = |published: &Published| {
         Ok(Input {
             name: published.name.clone(),
-            digest: Digest::of_file(&published.file)?,
+            digest: digest(&published.file)?,
             origin: Some(published.file.display().to_string()),
         })
     };
     parameters.published.iter().map(input).collect()
+}
+
+fn digest(path: &Path) -> Result<Digest, StageError> {
+    let unreadable = |source: std::io::Error| StageError::Published {
+        path: path.to_owned(),
+        source: source.into(),
+    };
+    files::admit(path, files::LARGEST_NUMBERS).map_err(unreadable)?;
+    Ok(Digest::of_file(path)?)
 }
 
 /// Averages the curves and writes the tables; returns warnings.

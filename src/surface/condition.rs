@@ -5,6 +5,7 @@ use super::form::{Form, FormError, LARGEST_ORDER, RemovedForm, remove_form};
 use super::resample::{Grid, GridError, block_means, place_on_grid, points_per_cell};
 use super::window::{window_name, windows};
 use super::{LineScan, RawScan};
+use crate::error_kind::{ErrorKind, HasKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -192,6 +193,19 @@ pub enum ConditioningError {
     /// No window was kept.
     #[error("scan {scan}: none of {windows} windows is left; the first: {reason}")]
     NothingLeft { scan: String, windows: usize, reason: String },
+}
+
+impl HasKind for ConditioningError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Parameter { .. }
+            | Self::Repeated { .. }
+            | Self::Grid { .. }
+            | Self::TooShort { .. }
+            | Self::Form { .. }
+            | Self::NothingLeft { .. } => ErrorKind::Input,
+        }
+    }
 }
 
 impl Conditioning {

@@ -10,6 +10,7 @@
 //! two FFTs do.
 
 use super::LineScan;
+use crate::error_kind::{ErrorKind, HasKind};
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex, num_complex::Complex};
 use std::collections::BTreeMap;
@@ -77,6 +78,17 @@ pub enum CorrelationError {
     /// An average over nothing.
     #[error("no correlations to average; give at least one scan")]
     NoScans,
+}
+
+impl HasKind for CorrelationError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::TooFewHeights { .. } | Self::UnequalSpacing { .. } | Self::NoScans => {
+                ErrorKind::Input
+            }
+            Self::TooLong { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 impl HeightDifferenceCorrelation {

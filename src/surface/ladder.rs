@@ -1,5 +1,6 @@
 //! The ladder of wavelengths that stand for a surface: each twice the one before.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -105,6 +106,16 @@ pub enum LadderError {
         /// Half the window in metres.
         half_window: f64,
     },
+}
+
+impl HasKind for LadderError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NoWaves | Self::NotPositive { .. } | Self::NothingDetermined { .. } => {
+                ErrorKind::Input
+            }
+        }
+    }
 }
 
 impl Ladder {

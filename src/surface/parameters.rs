@@ -1,6 +1,7 @@
 //! Roughness parameters of line scans (thesis 3.2.1-7) and the root mean square slope.
 
 use super::LineScan;
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::statistics::MeanEstimate;
 use thiserror::Error;
 
@@ -61,6 +62,17 @@ pub enum ParameterError {
     /// An average over nothing.
     #[error("no scans to average; give at least one")]
     NoScans,
+}
+
+impl HasKind for ParameterError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NoHeights { .. }
+            | Self::NoNeighbours { .. }
+            | Self::Flat { .. }
+            | Self::NoScans => ErrorKind::Input,
+        }
+    }
 }
 
 impl RoughnessParameters {

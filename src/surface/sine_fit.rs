@@ -17,6 +17,7 @@
 
 use super::SineScale;
 use super::correlation::CorrelationSample;
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::statistics::student_t_975;
 use cost::{LogarithmicCost, minimise};
 use nalgebra::{DMatrix, DVector};
@@ -114,6 +115,17 @@ pub enum SineFitError {
         /// Derivative of the cost by the squared relative amplitude.
         multiplier: f64,
     },
+}
+
+impl HasKind for SineFitError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::TooFewLags { .. } | Self::Wavelength { .. } => ErrorKind::Input,
+            Self::NotPositive { .. } | Self::NotConverged { .. } | Self::NotOptimal { .. } => {
+                ErrorKind::Failure
+            }
+        }
+    }
 }
 
 impl SineFit {

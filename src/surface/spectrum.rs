@@ -22,6 +22,7 @@ pub use isotropic::{IsotropicError, abel_inverse, self_affine_isotropic};
 pub use window::Window;
 
 use super::{HeightDifferenceCorrelation, LineScan};
+use crate::error_kind::{ErrorKind, HasKind};
 use rayon::prelude::*;
 use realfft::{RealFftPlanner, RealToComplex};
 use serde::{Deserialize, Serialize};
@@ -125,6 +126,18 @@ pub enum SpectrumError {
     /// No points or no spectra.
     #[error("no heights or no spectra; give at least one scan of two points")]
     Empty,
+}
+
+impl HasKind for SpectrumError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::LagTooLong { .. } | Self::UnequalGrids { .. } | Self::Empty => ErrorKind::Input,
+            Self::Gaps { .. }
+            | Self::OtherLength { .. }
+            | Self::NoPairs { .. }
+            | Self::CountMismatch { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// FFT plan for spectra of scans of one number of points.

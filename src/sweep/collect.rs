@@ -3,7 +3,7 @@
 use super::layout::{Layout, RECIPE_FILE};
 use super::plan::{PlannedTask, ShardTasks, SweepPlan, Wanted};
 use super::prepare::{of_case, scan_digests, scans};
-use super::slurm::shell_word;
+use super::slurm::shell_path;
 use super::table::{FRICTION_FILE, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
@@ -215,7 +215,7 @@ fn lines(path: &Path, states: &[ShardState]) -> Vec<String> {
     let shard = open.first().map_or(0, |state| state.shard);
     lines.push(format!(
         "run them again, such as `asperity sweep run {} --shard {shard}`, then collect",
-        shell_word(&path.display().to_string())
+        shell_path(path)
     ));
     lines
 }

@@ -34,6 +34,7 @@ pub use table::{FRICTION_FILE, SweepFrictionRow};
 pub use task::{Solvers, Task};
 
 use crate::artifact::ArtifactError;
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::pipeline::PipelineError;
 use crate::recipe::Violation;
 use crate::stages::StageError;
@@ -146,13 +147,23 @@ pub enum SweepError {
     Slurm(String),
 }
 
-impl SweepError {
-    /// Whether the user interrupted.
-    pub fn is_interrupt(&self) -> bool {
+impl HasKind for SweepError {
+    fn kind(&self) -> ErrorKind {
         match self {
-            Self::Case { source, .. } => source.is_interrupt(),
-            Self::Stage(source) => matches!(**source, StageError::Interrupted),
-            _ => false,
+            Self::Recipe(source) => source.kind(),
+            Self::Case { source, .. } => source.kind(),
+            Self::Stage(source) => source.kind(),
+            Self::Artifact(source) => source.kind(),
+            Self::NoPlan { .. }
+            | Self::BadPlan { .. }
+            | Self::OtherVersion { .. }
+            | Self::NoSuchShard { .. }
+            | Self::RubberChanged { .. }
+            | Self::ScansChanged { .. }
+            | Self::Slurm(_) => ErrorKind::Input,
+            Self::Io { .. } | Self::Incomplete { .. } | Self::NoCompleteCase { .. } => {
+                ErrorKind::Failure
+            }
         }
     }
 }

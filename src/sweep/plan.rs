@@ -301,7 +301,7 @@ fn write_json(path: &Path, value: &impl Serialize) -> Result<(), SweepError> {
 
 fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, SweepError> {
     let io = |source| SweepError::Io { action: "read", path: path.to_owned(), source };
-    let bytes = std::fs::read(path).map_err(io)?;
+    let bytes = crate::files::read(path, crate::files::LARGEST_NUMBERS).map_err(io)?;
     serde_json::from_slice(&bytes).map_err(|error| SweepError::BadPlan {
         path: path.to_owned(),
         reason: format!("it cannot be read ({error}): it is damaged or no plan"),

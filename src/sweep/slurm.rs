@@ -82,8 +82,7 @@ pub fn scripts(
     let megabytes = (MARGIN * plan.megabytes(request.cpus.max(1))).max(LEAST_MEGABYTES).ceil();
     let megabytes = request.megabytes.map_or(megabytes, f64::from);
     let logs = Layout::of_plan(path)?.logs();
-    let (program, plan_path) =
-        (shell_word(&request.program), shell_word(&path.display().to_string()));
+    let (program, plan_path) = (shell_word(&request.program), shell_path(path));
     let log = |name: &str| quoted_option(&logs.join(name));
     let mut array = header("asperity", minutes, megabytes, request);
     // Writing to a string cannot fail.
@@ -123,6 +122,21 @@ pub fn shell_word(text: &str) -> String {
         return text.to_owned();
     }
     format!("'{}'", text.replace('\'', r"'\''"))
+}
+
+/// A path as one word of a POSIX shell, also one that is not UTF-8: `printf` then makes its bytes.
+pub fn shell_path(path: &Path) -> String {
+    if let Some(text) = path.to_str() {
+        return shell_word(text);
+    }
+    let byte = |byte: &u8| match byte {
+        plain if plain.is_ascii_alphanumeric() || b"/._-".contains(plain) => {
+            char::from(*plain).to_string()
+        }
+        other => format!("\\{other:03o}"),
+    };
+    let bytes: String = path.as_os_str().as_encoded_bytes().iter().map(byte).collect();
+    format!("\"$(printf '{bytes}')\"")
 }
 
 /// One word of an `#SBATCH` line, where a blank ends the option and `%` begins a pattern.

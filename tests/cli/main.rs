@@ -9,6 +9,8 @@ mod bench;
 mod campaign;
 mod files;
 mod inspect;
+mod mistakes;
+mod odd_files;
 mod report;
 mod rubber;
 mod solve;

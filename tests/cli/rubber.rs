@@ -196,7 +196,7 @@ fn bad_options_are_explained() {
         ("--terms 152", "152 points are too few"),
         ("--poisson-ratio 0.6", "--poisson-ratio is 0.6"),
         ("--reference-temperature-c 5", "choose one of [-30, -25, -20, -15, -10, 0, 10, 20] °C"),
-        ("--reference-temperature-c nan", "no finite number"),
+        ("--reference-temperature-c nan", "not a finite number"),
     ];
     for (options, part) in cases {
         let error = fit(&project(SWEEPS), &format!("{options} {to}")).error(2);

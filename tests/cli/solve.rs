@@ -199,10 +199,10 @@ fn bad_options_are_named_with_exit_code_2() {
         ("solve bem".to_owned(), "--speed <MM_S>"),
         (format!("solve bem {rest}"), "--wave"),
         (format!("solve bem --wave 0.0625 {rest}"), "such as 0.0625:0.01867"),
-        (format!("solve bem --wave a:b {rest}"), "`a` is no number"),
+        (format!("solve bem --wave a:b {rest}"), "`a` is not a number"),
         (format!("solve bem --wave 0:1 {rest}"), "0 is not positive"),
         (format!("solve bem --wave -1:1 {rest}"), "-1 is not positive"),
-        (format!("solve bem --wave 1:NaN {rest}"), "no finite number"),
+        (format!("solve bem --wave 1:NaN {rest}"), "not a finite number"),
         (format!("solve bem --wave 1:1 --wave 1.41421356:1 {rest}"), "no common period"),
         (format!("solve bem --wave 1:1 --profile x --profile-unit mm {rest}"), "cannot be used"),
         (format!("solve bem --wave 1:1 --profile-unit mm {rest}"), "cannot be used"),
@@ -211,7 +211,7 @@ fn bad_options_are_named_with_exit_code_2() {
         (format!("{load} {rest} --area 0.1"), "cannot be used with"),
         (format!("{load} --speed 0 --pressure 1"), "0 is not positive"),
         (format!("{load} --speed -10 --pressure 1"), "-10 is not positive"),
-        (format!("{load} --speed 10 --pressure NaN"), "`NaN` is no finite number"),
+        (format!("{load} --speed 10 --pressure NaN"), "`NaN` is not a finite number"),
         (format!("{load} --speed 10 --pressure -1"), "-1 is not positive"),
         (format!("{load} --speed 10 --pressure 3,3"), "the decimal mark is a point"),
         (format!("{load} --speed 10 --area 5"), "5 % is 0.05"),
@@ -238,7 +238,7 @@ fn a_bad_rubber_is_named_by_file_line_and_key() {
     let path = folder.path().join("rubber.toml");
     fs::write(&path, "name = 'tread'\nmodulus_mpa = 3\n").unwrap();
     let error = asperity_at(&format!("{TABLE_5_3} --rubber {{}}"), &path).error(2);
-    for part in ["rubber.toml does not describe a rubber", "caused by: ", "line 2", "modulus_mpa"] {
+    for part in ["rubber.toml, line 2", "unknown key `modulus_mpa`"] {
         assert!(error.contains(part), "{error}");
     }
 }

@@ -84,7 +84,7 @@ fn a_misspelt_key_is_named_with_its_line_and_the_nearest_one() {
     assert!(message.contains("did you mean `speeds_mm_s`?"), "{message}");
     fs::write(&path, recipe.replace("speeds_mm_s", "xyz")).unwrap();
     let message = within(folder.path(), "status road/recipe.toml").error(2);
-    assert!(message.contains("unknown field `xyz`") && !message.contains("did you mean"));
+    assert!(message.contains("unknown key `xyz`") && !message.contains("did you mean"));
 }
 
 #[test]

@@ -55,11 +55,11 @@ fn options_reach_the_scans() {
 fn impossible_scans_are_explained() {
     let folder = tempfile::tempdir().unwrap();
     let cases = [
-        ("--length-mm -1", "synth.length_m is -0.001"),
-        ("--hurst-exponent 1", "synth.hurst_exponent is 1"),
-        ("--noise-um NaN", "`NaN` is no finite number"),
-        ("--scans 0", "synth.scans is 0"),
-        ("--scans -1", "no whole number"),
+        ("--length-mm -1", "--length-mm is -1 mm: it must be positive"),
+        ("--hurst-exponent 1", "--hurst-exponent is 1: it must be above 0 and below 1"),
+        ("--noise-um NaN", "`NaN` is not a finite number"),
+        ("--scans 0", "--scans is 0"),
+        ("--scans -1", "not a whole number"),
         ("--scans 1000000000", "lower --scans"),
         ("--no-outer-regime --crossover-lag-mm 1", "cannot be used with"),
     ];
@@ -71,6 +71,6 @@ fn impossible_scans_are_explained() {
     assert!(!folder.path().join("new").exists());
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    let error = asperity_at("synth --out {} --scans 1 --length-mm 1", &file).error(1);
-    assert!(error.contains("cannot create the folder"), "{error}");
+    let error = asperity_at("synth --out {} --scans 1 --length-mm 1", &file).error(2);
+    assert!(error.contains("is a file, not a folder: choose another place"), "{error}");
 }

@@ -107,7 +107,7 @@ fn a_large_scan_is_read_in_bounded_memory() {
 fn what_is_no_plain_file_is_no_scan() {
     let campaign = Campaign::new();
     let error = quietly(&campaign, "run recipe.toml --scans /dev/zero --out out").error(2);
-    assert!(error.contains("/dev/zero: this is no plain file"), "{error}");
+    assert!(error.contains("/dev/zero: it is a device, not a file"), "{error}");
     let error = quietly(&campaign, "inspect /dev/zero").error(2);
     assert!(error.contains("/dev/zero"), "{error}");
 }

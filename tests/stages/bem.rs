@@ -273,7 +273,7 @@ fn a_limit_of_realisations_without_an_accuracy_is_refused_and_so_is_no_number_at
     assert!(message.contains("realise.most_realisations = 20"), "{message}");
     campaign.edit("recipe.toml", "most_realisations = 20", "");
     let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
-    assert!(message.contains("realise.realisations = 0, wanted: a number"), "{message}");
+    assert!(message.contains("realise.realisations is missing: give a number"), "{message}");
 }
 
 #[test]
@@ -282,7 +282,10 @@ fn an_accuracy_beside_those_that_follow_from_it_is_refused() {
     let text = campaign.read("recipe.toml");
     campaign.write("recipe.toml", &format!("tolerance = 0.01\n{text}"));
     let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
-    assert!(message.contains("tolerance = 0.01, wanted: without bem.tolerance"), "{message}");
+    assert!(
+        message.contains("tolerance = 0.01: must be given alone: leave out bem.tolerance"),
+        "{message}"
+    );
     campaign.edit("recipe.toml", "tolerance = 5e-3\n", "");
     let text = campaign.read("recipe.toml").replace("tolerance = 0.01\n", "");
     campaign.write("recipe.toml", &format!("tolerance = 2\n{text}"));

@@ -11,6 +11,7 @@ pub use job::{Job, Sample, SolveCost};
 pub use report::markdown;
 
 use super::measure::Effort;
+use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::statistics::least_squares_line;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -71,6 +72,15 @@ pub enum GrowthError {
         /// The text.
         text: String,
     },
+}
+
+impl HasKind for GrowthError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NoJob { .. } => ErrorKind::Input,
+            Self::Start { .. } | Self::Job { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// Runs every series; `arguments` before the name of a job make `executable` print its sample.

@@ -18,7 +18,7 @@ impl Export {
         }
         match self.format {
             Format::Markdown => self.text(&read(view)?.markdown()),
-            Format::Svg => self.text(&study_figure(&read(view)?).map_err(CliError::failure)?),
+            Format::Svg => self.text(&study_figure(&read(view)?)?),
             Format::Csv => self.study_csv(view),
             Format::Latex | Format::Parquet | Format::Xlsx => {
                 Err(CliError::input("the study of one sine is exported as markdown, csv or svg"))
@@ -31,12 +31,10 @@ impl Export {
         let Some(folder) = &self.to else {
             return Err(CliError::input("there are several tables: give a folder with --to"));
         };
-        std::fs::create_dir_all(folder).map_err(|error| {
-            CliError::failure(format!("cannot create {}: {error}", folder.display()))
-        })?;
-        let manifest = view.stage_manifest(STAGE).map_err(CliError::input)?;
+        std::fs::create_dir_all(folder).map_err(|error| CliError::no_folder(folder, &error))?;
+        let manifest = view.stage_manifest(STAGE)?;
         for output in manifest.into_iter().flat_map(|manifest| manifest.outputs) {
-            let frame = data_frame(&view.file(STAGE, &output.file)).map_err(CliError::input)?;
+            let frame = data_frame(&view.file(STAGE, &output.file))?;
             let path = folder.join(&output.file).with_extension("csv");
             self.bytes(&path, csv_bytes(&frame))?;
         }

@@ -34,8 +34,8 @@ impl Export {
                 "the table of a sweep has model, waves and speed as columns: leave --model, --waves and --speed out",
             ));
         }
-        view.verify(STAGE).map_err(CliError::input)?;
-        let mut frame = data_frame(&view.file(STAGE, FRICTION_FILE)).map_err(CliError::input)?;
+        view.verify(STAGE)?;
+        let mut frame = data_frame(&view.file(STAGE, FRICTION_FILE))?;
         match (self.format, &self.to) {
             (Format::Csv, None) => print(&csv_text(&frame)?),
             (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
@@ -49,9 +49,8 @@ impl Export {
         view: &RunView,
         one: impl Fn(&str, &[crate::report::FrictionTable], &About) -> String,
     ) -> Result<(), CliError> {
-        let (rows, _) =
-            view.read_table::<SweepFrictionRow>(STAGE, FRICTION_FILE).map_err(CliError::input)?;
-        let manifest = view.stage_manifest(STAGE).map_err(CliError::input)?;
+        let (rows, _) = view.read_table::<SweepFrictionRow>(STAGE, FRICTION_FILE)?;
+        let manifest = view.stage_manifest(STAGE)?;
         let tolerance = manifest.and_then(|manifest| manifest.parameters["tolerance"].as_f64());
         let mut text = String::new();
         for rows in rows.chunk_by(|a, b| key(a) == key(b)) {

@@ -100,9 +100,7 @@ impl Init {
         let path = folder.join("recipe.toml");
         let checked = Recipe::parse(&recipe, &path);
         let make = |path: &Path| {
-            fs::create_dir_all(path).map_err(|error| {
-                CliError::failure(format!("cannot create {}: {error}", path.display()))
-            })
+            fs::create_dir_all(path).map_err(|error| CliError::no_folder(path, &error))
         };
         make(folder)?;
         if self.scans.is_empty() {
@@ -179,7 +177,7 @@ fn from_scan(file: &Path) -> Result<FromScan, CliError> {
         .map_err(|error| CliError::input(format!("cannot read {}: {error}", file.display())))?;
     if Family::detect(&bytes).is_some() {
         let name = file.display().to_string();
-        let read = parse_file(&name, &bytes).map_err(CliError::input)?;
+        let read = parse_file(&name, &bytes)?;
         let scan = read.map(|file| file.line_scans("scan", MapLines::Rows, 1));
         let scan = scan.and_then(|scans| scans.into_iter().next());
         return Ok(ladder(scan, String::new(), Vec::new()));

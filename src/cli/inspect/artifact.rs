@@ -21,6 +21,7 @@ const COLUMNS_ABREAST: usize = 8;
 /// A table.
 #[derive(Debug, Serialize)]
 pub(super) struct Table {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     info: TableInfo,
@@ -33,6 +34,7 @@ pub(super) struct Table {
 /// A file of arrays.
 #[derive(Debug, Serialize)]
 pub(super) struct Arrays {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     info: ArraysInfo,
@@ -54,8 +56,8 @@ struct Statistics {
 
 impl Table {
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
-        let info = table_info(path).map_err(CliError::input)?;
-        let frame = data_frame(path).map_err(CliError::input)?.head(Some(FIRST_ROWS));
+        let info = table_info(path)?;
+        let frame = data_frame(path)?.head(Some(FIRST_ROWS));
         Ok(Self {
             path: path.to_path_buf(),
             info,
@@ -130,8 +132,8 @@ fn to_json(value: &AnyValue) -> Value {
 
 impl Arrays {
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
-        let info = arrays_info(path).map_err(CliError::input)?;
-        let datasets = read_arrays(path, &info.schema, info.version).map_err(CliError::input)?;
+        let info = arrays_info(path)?;
+        let datasets = read_arrays(path, &info.schema, info.version)?;
         Ok(Self {
             path: path.to_path_buf(),
             info,

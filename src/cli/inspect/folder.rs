@@ -13,6 +13,7 @@ use crate::cli::output::{aligned, significant};
 /// A manifest on its own.
 #[derive(Debug, Serialize)]
 pub(super) struct ManifestFile {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     manifest: Manifest,
 }
@@ -20,6 +21,7 @@ pub(super) struct ManifestFile {
 /// The result of a stage.
 #[derive(Debug, Serialize)]
 pub(super) struct Stage {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     manifest: Manifest,
     /// In the order of the outputs of the manifest.
@@ -29,6 +31,7 @@ pub(super) struct Stage {
 /// The results of a run, by the name of the stage.
 #[derive(Debug, Serialize)]
 pub(super) struct Run {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     stages: Vec<Stage>,
 }

@@ -11,6 +11,7 @@ use crate::scans::file::{Grid, ScanFile};
 /// An instrument file, summarised.
 #[derive(Debug, Serialize)]
 pub(super) struct InstrumentFile {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     format: String,
     /// How the format was told.

@@ -89,7 +89,8 @@ impl Inspect {
             refuse_channel(path, self.erd_channel, None)?;
             return folder::read(path);
         }
-        let start = first_bytes(path)
+        let start = crate::files::admit(path, u64::MAX)
+            .and_then(|()| first_bytes(path))
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         let format = Format::of(&start);
         refuse_channel(path, self.erd_channel, Family::detect(&start))?;
@@ -145,7 +146,7 @@ pub(super) fn read_instrument(
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         refuse_channel(path, channel, Family::detect(&start))?;
     }
-    read_channel(path, channel).map_err(CliError::input)
+    Ok(read_channel(path, channel)?)
 }
 
 /// Reads the instrument file at `path`.

@@ -120,7 +120,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Manifest, CliError> {
             path.display()
         ))
     };
-    let bytes = std::fs::read(path)
+    let bytes = crate::files::read(path, crate::files::LARGEST_NUMBERS)
         .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
     // Another kind or version may have other fields, so the header is judged alone.
     let header: Header = serde_json::from_slice(&bytes).map_err(unreadable)?;

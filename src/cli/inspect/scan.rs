@@ -135,7 +135,7 @@ impl ScanOptions {
             );
             foreign(path, &problem)
         })?;
-        let scan = read_text(path, &format).map_err(CliError::input)?;
+        let scan = read_text(path, &format)?;
         let shape = read_bytes(path).ok().and_then(|bytes| TextShape::of(&bytes));
         let contradictions = shape.map(|shape| shape.contradictions(&format)).unwrap_or_default();
         Ok(Scan { contradictions, ..Scan::of(path, scan) })
@@ -184,6 +184,7 @@ impl ScanOptions {
 /// A raw scan, summarised.
 #[derive(Debug, Serialize)]
 pub(super) struct Scan {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     format: &'static str,
     pub(super) points: usize,

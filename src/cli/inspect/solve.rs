@@ -11,6 +11,7 @@ use crate::cli::output::aligned;
 /// One result of a sweep, kept so that a stopped run goes on from it.
 #[derive(Debug, Serialize)]
 pub(super) struct Solve {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     stored: StoredSolve,
@@ -29,7 +30,7 @@ impl Solve {
     }
 
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
-        let stored = read_stored_solve(path).map_err(CliError::input)?;
+        let stored = read_stored_solve(path)?;
         Ok(Self { path: path.to_path_buf(), stored })
     }
 

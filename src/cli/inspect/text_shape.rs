@@ -18,6 +18,7 @@ const MOST_COLUMNS: usize = 12;
 /// What a text looks like.
 #[derive(Debug, Serialize)]
 pub(super) struct TextShape {
+    #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     format: &'static str,
     encoding: &'static str,

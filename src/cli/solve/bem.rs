@@ -15,7 +15,7 @@ use crate::cli::output::{aligned, json, note, print, refuse_existing, significan
 use crate::cli::{CliError, values};
 use crate::contact::refine::{OnGrid, RefineError, Refined, Refinement, Watched, on_grid};
 use crate::contact::sliding::POINTS_RANGE;
-use crate::contact::{ContactSolution, SlidingContact};
+use crate::contact::{ContactError, ContactSolution, SlidingContact};
 use crate::rubber::Rubber;
 
 /// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
@@ -65,7 +65,8 @@ pub(in crate::cli) struct Bem {
     /// Mean pressure in MPa.
     #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
     pressure: Option<f64>,
-    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure.
+    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure. Where the grid has
+    /// no such area, the nearest one is taken if it is within its own estimated error.
     #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
     area: Option<f64>,
     #[command(flatten)]
@@ -119,6 +120,9 @@ impl Bem {
         let solution = &refined.solution;
         let summary = Summary::new(&refined, start.elapsed().as_secs_f64());
         summary.check()?;
+        if let Some(warning) = self.distance_of_area(&refined)? {
+            note(quiet, format_args!("warning: {warning}"));
+        }
         let spot = points_per_spot(&solution.pressure);
         if spot < RESOLVED_SPOT {
             note(
@@ -170,7 +174,9 @@ impl Bem {
         };
         refinement.run(optional, view).map_err(|error| match error {
             RefineError::Solve(error) => error,
-            unreached @ RefineError::NotReached { .. } => CliError::failure(unreached.to_string()),
+            unreached @ RefineError::NotReached { .. } => {
+                CliError::failure(format!("--tolerance: {unreached}"))
+            }
         })
     }
 
@@ -189,8 +195,39 @@ impl Bem {
         }
         match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => Ok(contact.solve(pressure_mpa * 1e6)?),
-            (None, Some(fraction)) => Ok(contact.solve_for_area(fraction, AREA_TOLERANCE)?),
+            (None, Some(fraction)) => {
+                let nearest = contact.solve_near_area(fraction, AREA_TOLERANCE)?;
+                let distance = (nearest.contact_area_fraction - fraction).abs();
+                // Further off than a point of the grid is another contact.
+                if distance * points as f64 > 1.0 {
+                    return Err(not_reached(fraction, &nearest));
+                }
+                Ok(nearest)
+            }
             (None, None) => Err(CliError::input("give --pressure or --area")),
+        }
+    }
+
+    /// How far the contact area is from the one asked for, where the grid has none that is nearer. An area within
+    /// its own estimated error cannot be told from the one asked for.
+    fn distance_of_area(
+        &self,
+        refined: &Refined<ContactSolution>,
+    ) -> Result<Option<String>, CliError> {
+        let Some(fraction) = self.area else { return Ok(None) };
+        let solution = &refined.solution;
+        let found = solution.contact_area_fraction;
+        let distance = (found - fraction).abs();
+        if distance <= AREA_TOLERANCE * fraction {
+            return Ok(None);
+        }
+        match refined.error.map(|error| error.contact_area_fraction) {
+            Some(error) if distance <= error => Ok(Some(format!(
+                "the nearest contact area fraction on {} points is {found:.7}, {distance:.1e} from the {fraction} asked \
+                 for, which is within its estimated error of {error:.1e}",
+                solution.pressure.len()
+            ))),
+            _ => Err(not_reached(fraction, solution)),
         }
     }
 
@@ -250,6 +287,16 @@ impl Summary {
             ("time", significant(self.seconds) + " s"),
         ])
     }
+}
+
+/// The refusal of a contact area that the grid does not have.
+fn not_reached(wanted: f64, nearest: &ContactSolution) -> CliError {
+    CliError::from(ContactError::AreaNotReached {
+        wanted,
+        found: nearest.contact_area_fraction,
+        pressure: nearest.mean_pressure,
+        points: nearest.pressure.len(),
+    })
 }
 
 /// Mean number of neighbouring grid points in contact; infinite in full contact.

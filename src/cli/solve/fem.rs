@@ -15,6 +15,8 @@ use crate::cli::progress::Spinner;
 use crate::cli::{CliError, values};
 use crate::contact::SlidingContact;
 use crate::contact::refine::{OnGrid, RefineError, Refinement, Watched, on_grid};
+use crate::error_kind::HasKind;
+use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::solution::SteadySolution;
 use crate::fem::steady::{BlockOptions, SteadyContact};
@@ -251,7 +253,7 @@ impl Fem {
                 refinement.run(optional, view).map_err(|error| match error {
                     RefineError::Solve(error) => error,
                     unreached @ RefineError::NotReached { .. } => {
-                        CliError::failure(unreached.to_string())
+                        CliError::failure(format!("--tolerance: {unreached}"))
                     }
                 })?
             }
@@ -276,13 +278,12 @@ impl Fem {
         let (rheology, speed) = (self.rheology.into(), self.speed / 1e3);
         let mut contact = SteadyContact::new(rubber, rheology, speed, profile.clone(), options)?;
         match (self.pressure, self.area) {
-            (Some(pressure_mpa), _) => Ok(contact.solve(pressure_mpa * 1e6)?),
-            (None, Some(fraction)) => {
-                contact.solve_for_area(fraction, AREA_TOLERANCE).map_err(|error| {
-                    let error = CliError::from(error);
-                    CliError::failure(format!("--area {fraction}: {error}"))
-                })
+            (Some(pressure_mpa), _) => {
+                contact.solve(pressure_mpa * 1e6).map_err(|error| with_advice("", error))
             }
+            (None, Some(fraction)) => contact
+                .solve_for_area(fraction, AREA_TOLERANCE)
+                .map_err(|error| with_advice(&format!("--area {fraction}: "), error)),
             (None, None) => Err(CliError::input("give --pressure or --area")),
         }
     }
@@ -339,6 +340,19 @@ impl Fem {
         }
         Ok(summary)
     }
+}
+
+/// The error with the options that may help.
+fn with_advice(of: &str, error: FemError) -> CliError {
+    let advice = match &error {
+        FemError::Rubber(_) | FemError::OutOfRange { .. } => "",
+        FemError::PathEnded { reached: PathEnd::NotStarted, .. } => "; try other --columns",
+        FemError::PathEnded { reached: PathEnd::At { .. }, .. } => {
+            "; try other --columns, or a pressure below that"
+        }
+        FemError::AreaNotReached { .. } => "; give more --columns for a smaller area",
+    };
+    CliError::of(error.kind(), format!("{of}{error}{advice}"))
 }
 
 fn view(solution: &SteadySolution) -> OnGrid {

@@ -34,7 +34,7 @@ pub(super) struct Material(RubberData);
 impl MaterialOptions {
     pub(super) fn material(&self) -> Result<Material, CliError> {
         let data = match (&self.rubber, self.modulus, self.poisson) {
-            (Some(path), _, _) => read_rubber_data(path).map_err(CliError::input)?,
+            (Some(path), _, _) => read_rubber_data(path)?,
             (None, Some(modulus_mpa), Some(poisson_ratio)) => {
                 Rubber::elastic(modulus_mpa * 1e6, poisson_ratio).into()
             }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::shape::Shape;
 use crate::cli::values;
+use crate::files;
 use crate::scans::description::LengthUnit;
 
 /// Largest deviation of a position from equal spacing, in spacings: positions printed with few
@@ -16,7 +17,8 @@ const SPACING_TOLERANCE: f64 = 0.05;
 /// What is wrong, with the file and the line.
 pub(super) fn read_profile(path: &Path, unit: LengthUnit) -> Result<Shape, String> {
     let in_file = |problem: String| format!("{}: {problem}", path.display());
-    let bytes = std::fs::read(path).map_err(|error| in_file(format!("cannot be read: {error}")))?;
+    let bytes = files::read(path, files::LARGEST_NUMBERS)
+        .map_err(|error| in_file(format!("cannot be read: {error}{}", files::advice(&error))))?;
     let text = String::from_utf8(bytes).map_err(|_| in_file("is no UTF-8 text".into()))?;
     parse_profile(&text, unit).map_err(|(line, problem)| match line {
         Some(line) => format!("{}, line {line}: {problem}", path.display()),
@@ -132,9 +134,9 @@ mod tests {
         let cases = [
             ("", None, "has 0 points"),
             ("0 1", None, "has 1 points"),
-            ("x,z\n0,1\n1,2", Some(1), "x: `x` is no number; start lines of text with #"),
-            ("0,1\n1,\n2,2", Some(2), "z: `` is no number"),
-            ("0 1\n1 NaN\n2 2", Some(2), "`NaN` is no finite number"),
+            ("x,z\n0,1\n1,2", Some(1), "x: `x` is not a number; start lines of text with #"),
+            ("0,1\n1,\n2,2", Some(2), "z: `` is not a number"),
+            ("0 1\n1 NaN\n2 2", Some(2), "`NaN` is not a finite number"),
             ("0,5;1,5", Some(1), "4 columns, needed are the 2 columns x and z"),
             ("0\n1\n", Some(1), "1 columns"),
             ("0 1\n0 2\n1 3", Some(2), "x = 0 does not grow from 0"),

@@ -278,13 +278,13 @@ mod tests {
             ("0.0625", "WAVELENGTH_MM:AMPLITUDE_MM"),
             ("1:2:3:4", "WAVELENGTH_MM:AMPLITUDE_MM"),
             ("", "WAVELENGTH_MM:AMPLITUDE_MM"),
-            ("a:b", "the wavelength in mm: `a` is no number"),
+            ("a:b", "the wavelength in mm: `a` is not a number"),
             ("0:1", "the wavelength in mm: 0 is not positive"),
             ("-1:1", "the wavelength in mm: -1 is not positive"),
-            ("1:", "the amplitude in mm: `` is no number"),
-            ("1:nan", "the amplitude in mm: `nan` is no finite number"),
+            ("1:", "the amplitude in mm: `` is not a number"),
+            ("1:nan", "the amplitude in mm: `nan` is not a finite number"),
             ("1:0,5", "the decimal mark is a point"),
-            ("1:1:inf", "the phase in rad: `inf` is no finite number"),
+            ("1:1:inf", "the phase in rad: `inf` is not a finite number"),
         ];
         for (text, part) in cases {
             let message = parse_wave(text).unwrap_err();

@@ -59,7 +59,7 @@ impl Collect {
         let path = self.plan.absolute()?;
         let planned = read_plan(&path)?;
         let layout = Layout::of_plan(&path)?;
-        let cases = planned.recipe.cases().map_err(CliError::input)?;
+        let cases = planned.recipe.cases()?;
         let outcome = watched(quiet, "collecting", |watch| {
             if self.submit_next {
                 check(&path, &planned)?;

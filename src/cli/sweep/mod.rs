@@ -15,8 +15,6 @@ use super::interrupt::Interrupt;
 use super::last_run::LastRun;
 use super::output::note;
 use super::progress::Bar;
-use super::recipe_options::is_input;
-use crate::artifact::ArtifactError;
 use crate::pipeline::Event;
 use crate::recipe::{Case, Recipe};
 use crate::stages::Watch;
@@ -157,27 +155,6 @@ fn duration(seconds: f64) -> String {
 fn display(path: &Path) -> String {
     let here = std::env::current_dir().unwrap_or_default();
     path.strip_prefix(here).unwrap_or(path).display().to_string()
-}
-
-impl From<SweepError> for CliError {
-    fn from(error: SweepError) -> Self {
-        if error.is_interrupt() {
-            return Self::Interrupted;
-        }
-        match error {
-            SweepError::Case { ref source, .. } if is_input(source) => Self::input(error),
-            SweepError::Artifact(ArtifactError::Foreign { .. }) => Self::input(error),
-            SweepError::Recipe(_)
-            | SweepError::NoPlan { .. }
-            | SweepError::BadPlan { .. }
-            | SweepError::OtherVersion { .. }
-            | SweepError::NoSuchShard { .. }
-            | SweepError::RubberChanged { .. }
-            | SweepError::ScansChanged { .. }
-            | SweepError::Slurm(_) => Self::input(error),
-            _ => Self::failure(error),
-        }
-    }
 }
 
 #[cfg(test)]

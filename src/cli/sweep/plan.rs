@@ -55,7 +55,7 @@ impl Plan {
             let seconds: Vec<f64> = plan.seconds().collect();
             let tasks: Vec<usize> = plan.shards.iter().map(|shard| shard.tasks).collect();
             return print(&json_text(&json!({
-                "plan": path,
+                "plan": crate::files::name::path_text(&path),
                 "cases": plan.cases,
                 "tasks": tasks,
                 "seconds": seconds,

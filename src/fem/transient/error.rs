@@ -1,6 +1,7 @@
 //! What can go wrong in the transient contact.
 
 use super::solution::Sample;
+use crate::error_kind::{ErrorKind, HasKind};
 
 /// Why a time step has no solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -69,4 +70,15 @@ pub enum TransientError {
         /// The solution up to that time.
         samples: Vec<Sample>,
     },
+}
+
+impl HasKind for TransientError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Rubber(_) | Self::OutOfRange { .. } | Self::PeriodMismatch { .. } => {
+                ErrorKind::Input
+            }
+            Self::Stopped { .. } => ErrorKind::Failure,
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Measured sweeps and what may be wrong with them.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use std::ops::RangeInclusive;
 
 /// One measured point, in SI.
@@ -131,6 +132,21 @@ pub enum FitError {
         /// Why the last one is none.
         reason: &'static str,
     },
+}
+
+impl HasKind for FitError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Empty
+            | Self::OutOfRange { .. }
+            | Self::Duplicate { .. }
+            | Self::Temperatures
+            | Self::TooFewPoints { .. }
+            | Self::NoOverlap { .. }
+            | Self::Reference { .. } => ErrorKind::Input,
+            Self::NoFit { .. } => ErrorKind::Failure,
+        }
+    }
 }
 
 /// From a creep of ages to the vibrations of molecules, in rad/s.

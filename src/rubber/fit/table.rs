@@ -5,6 +5,7 @@
 //! points as decimal marks, comment lines after `#`.
 
 use super::{Sweep, SweepPoint};
+use crate::error_kind::{ErrorKind, HasKind};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -36,13 +37,21 @@ pub enum TableError {
     },
 }
 
+impl HasKind for TableError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Unreadable { .. } | Self::Problem { .. } => ErrorKind::Input,
+        }
+    }
+}
+
 /// Reads sweeps of Young's modulus from a CSV file; `factor` makes Young's modulus of what was
 /// measured ([`ModulusKind::factor`](super::ModulusKind::factor)).
 ///
 /// # Errors
 /// [`TableError`] with the line and what to do.
 pub fn read_sweeps(path: &Path, factor: f64) -> Result<Vec<Sweep>, TableError> {
-    let bytes = std::fs::read(path)
+    let bytes = crate::files::read(path, crate::files::LARGEST_NUMBERS)
         .map_err(|source| TableError::Unreadable { path: path.to_path_buf(), source })?;
     let problem = |line, problem| TableError::Problem { path: path.to_path_buf(), line, problem };
     let text = String::from_utf8(bytes).map_err(|_| {

@@ -1,5 +1,6 @@
 //! What can be wrong with an instrument file.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use std::fmt;
 use std::path::Path;
 
@@ -12,6 +13,13 @@ pub struct FileError {
     /// What is wrong.
     #[source]
     pub problem: FileProblem,
+}
+
+impl HasKind for FileError {
+    fn kind(&self) -> ErrorKind {
+        // A scan is a file of the user, whatever is wrong with it.
+        ErrorKind::Input
+    }
 }
 
 impl FileError {

@@ -27,7 +27,7 @@ pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError>
         return Err(whole(ScanProblem::Directory));
     }
     let bytes = super::read_bytes(path).map_err(|error| whole(error.into()))?;
-    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+    let name = crate::files::name::text(path.file_stem().unwrap_or(path.as_os_str()));
     parse_text(&name, &bytes, format).map_err(|error| error.in_file(path))
 }
 

@@ -1,5 +1,6 @@
 //! What is to be made: the parameters of a synthetic specimen and their ranges.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -104,6 +105,16 @@ pub enum SynthesisError {
         /// The sharpness asked for.
         plateau_sharpness: f64,
     },
+}
+
+impl HasKind for SynthesisError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::OutOfRange { .. } | Self::TooManyPoints { .. } | Self::NotRealisable { .. } => {
+                ErrorKind::Input
+            }
+        }
+    }
 }
 
 impl SyntheticAsphalt {

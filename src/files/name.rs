@@ -1,0 +1,137 @@
+//! Names and paths as text, without loss: file systems allow bytes that are not UTF-8, such as Latin-1 names on
+//! the shares of laboratories, while JSON, TOML and tables hold Unicode only.
+//!
+//! A path that is UTF-8 is its own text. Any other is `bytes:` and its bytes percent-encoded (RFC 3986), as in
+//! `bytes:stra%DFe/scan.txt`, which reads back to the same bytes.
+
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, percent_encode};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use std::ffi::{OsStr, OsString};
+use std::os::unix::ffi::OsStringExt;
+use std::path::{Path, PathBuf};
+
+const PREFIX: &str = "bytes:";
+const ESCAPED: &AsciiSet = &CONTROLS.add(b'%');
+
+/// A name for tables and messages: itself if it is UTF-8, else its bytes percent-encoded, as in `stra%DFe`.
+pub fn text(name: &OsStr) -> String {
+    let escaped = || percent_encode(name.as_encoded_bytes(), ESCAPED).to_string();
+    name.to_str().map_or_else(escaped, str::to_owned)
+}
+
+/// A path as it is kept in JSON and TOML, without loss.
+pub fn path_text(path: &Path) -> String {
+    match path.to_str() {
+        Some(plain) if !plain.starts_with(PREFIX) => plain.to_owned(),
+        _ => format!("{PREFIX}{}", percent_encode(path.as_os_str().as_encoded_bytes(), ESCAPED)),
+    }
+}
+
+fn path_of(text: String) -> PathBuf {
+    match text.strip_prefix(PREFIX) {
+        None => PathBuf::from(text),
+        Some(escaped) => {
+            PathBuf::from(OsString::from_vec(percent_decode_str(escaped).collect::<Vec<u8>>()))
+        }
+    }
+}
+
+/// For `#[serde(with)]` on a path.
+pub mod path {
+    use super::{Deserialize, Deserializer, Path, PathBuf, Serialize, Serializer, of, path_text};
+
+    /// # Errors
+    /// Those of the serialiser.
+    pub fn serialize<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+        path_text(path).serialize(serializer)
+    }
+
+    /// # Errors
+    /// Anything but a text.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, D::Error> {
+        of(String::deserialize(deserializer)?)
+    }
+}
+
+/// For `#[serde(with)]` on a path that may be absent, with `#[serde(default)]`.
+pub mod optional_path {
+    use super::{Deserialize, Deserializer, PathBuf, Serialize, Serializer, of, path_text};
+
+    /// # Errors
+    /// Those of the serialiser.
+    pub fn serialize<S: Serializer>(
+        path: &Option<PathBuf>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        path.as_deref().map(path_text).serialize(serializer)
+    }
+
+    /// # Errors
+    /// Anything but a text or nothing.
+    pub fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<PathBuf>, D::Error> {
+        Option::<String>::deserialize(deserializer)?.map(of).transpose()
+    }
+}
+
+/// For `#[serde(with)]` on a list of paths.
+pub mod paths {
+    use super::{Deserialize, Deserializer, PathBuf, Serializer, of, path_text};
+
+    /// # Errors
+    /// Those of the serialiser.
+    pub fn serialize<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(paths.iter().map(|path| path_text(path)))
+    }
+
+    /// # Errors
+    /// Anything but a list of texts.
+    pub fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<PathBuf>, D::Error> {
+        Vec::<String>::deserialize(deserializer)?.into_iter().map(of).collect()
+    }
+}
+
+/// A NUL byte ends a name for the operating system.
+fn of<E: Error>(text: String) -> Result<PathBuf, E> {
+    let path = path_of(text);
+    if path.as_os_str().as_encoded_bytes().contains(&0) {
+        return Err(E::custom("a path has no NUL byte"));
+    }
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Files {
+        #[serde(with = "path")]
+        one: PathBuf,
+        #[serde(with = "paths")]
+        many: Vec<PathBuf>,
+    }
+
+    #[test]
+    fn every_path_comes_back_from_json_and_toml() {
+        let odd = |bytes: &[u8]| PathBuf::from(OsString::from_vec(bytes.to_vec()));
+        let many = vec![
+            PathBuf::from("plain/ö %41.txt"),
+            odd(b"stra\xdfe/%DF \xc3\xb6.txt"),
+            PathBuf::from("bytes:x"),
+        ];
+        let files = Files { one: odd(b"\xe9"), many };
+        let json = serde_json::to_value(&files).unwrap();
+        assert_eq!(json["one"], "bytes:%E9");
+        assert_eq!(json["many"][0], "plain/ö %41.txt");
+        assert_eq!(serde_json::from_value::<Files>(json).unwrap(), files);
+        let toml = toml::to_string(&files).unwrap();
+        assert_eq!(toml::from_str::<Files>(&toml).unwrap(), files);
+        assert!(serde_json::from_str::<Files>(r#"{"one": "a\u0000", "many": []}"#).is_err());
+        assert_eq!(text(odd(b"stra\xdfe").as_os_str()), "stra%DFe");
+        assert_eq!(text(OsStr::new("straße %")), "straße %");
+    }
+}
