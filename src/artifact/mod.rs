@@ -34,7 +34,7 @@ mod tests;
 pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo, Storage};
 pub use arrays::{arrays_info, read_arrays, write_arrays};
 pub use columns::{Column, ColumnType, Row, columns};
-pub use digest::Digest;
+pub use digest::{Digest, Digesting};
 pub use error::ArtifactError;
 pub use frame::{data_frame, write_csv, write_parquet};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
