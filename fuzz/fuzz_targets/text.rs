@@ -22,7 +22,10 @@ fuzz_target!(|bytes: &[u8]| {
         if let Ok(format) = shape.format() {
             let file: File = toml::from_str(&section).expect("the proposed section is TOML");
             assert_eq!(file.ingest.text, format);
-            let _ = parse_text("fuzz", bytes, &format);
+            asperity_fuzz::within_memory(bytes.len(), || {
+                let _ = parse_text("fuzz", bytes, &format);
+                0
+            });
         }
     }
 });

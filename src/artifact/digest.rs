@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 use std::str::FromStr;
 
@@ -71,6 +72,37 @@ impl Digest {
 
     pub(super) fn of_hasher(hasher: &blake3::Hasher) -> Self {
         Self(*hasher.finalize().as_bytes())
+    }
+}
+
+/// A reader that digests what is read through it, so that a file need not be in memory to know
+/// that it is still the one that was digested before.
+pub struct Digesting<R> {
+    reader: R,
+    hasher: blake3::Hasher,
+}
+
+impl<R: Read> Digesting<R> {
+    /// Reads from `reader`.
+    pub fn new(reader: R) -> Self {
+        Self { reader, hasher: blake3::Hasher::new() }
+    }
+
+    /// Digest of all bytes, those that are still to be read included.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn finish(mut self) -> io::Result<Digest> {
+        self.hasher.update_reader(&mut self.reader)?;
+        Ok(Digest::of_hasher(&self.hasher))
+    }
+}
+
+impl<R: Read> Read for Digesting<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.reader.read(buffer)?;
+        self.hasher.update(&buffer[..read]);
+        Ok(read)
     }
 }
 

@@ -36,7 +36,7 @@ mod tests;
 pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo, Storage};
 pub use arrays::{arrays_info, read_arrays, write_arrays};
 pub use columns::{Column, ColumnType, Row, columns};
-pub use digest::Digest;
+pub use digest::{Digest, Digesting};
 pub use error::ArtifactError;
 pub use frame::{csv_bytes, data_frame, parquet_bytes};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};

@@ -64,14 +64,30 @@ pub enum ScanProblem {
     AmbiguousColumn { wanted: String, count: usize },
     #[error("holds numbers where the column names should be; set `header = false`")]
     HeaderIsData,
-    #[error("the record cannot be split into cells: {0}")]
-    Record(#[from] csv::Error),
+    #[error(
+        "a line of more than {limit} bytes is no line of points; check the file type, or export the file again"
+    )]
+    LongLine { limit: usize },
+    #[error("more than {limit} points; cut the file into parts, each of which is a scan")]
+    TooManyPoints { limit: u64 },
+    #[error("more than {limit} cells; check `separator`, or export one profile per file")]
+    ManyCells { limit: usize },
+    #[error(
+        "a cell opens a quotation mark that its line does not close, and the points up to the next mark would be lost \
+         in it; close or delete the mark"
+    )]
+    QuotedLines,
     #[error("{cells} cells under {columns} column names; check `separator` and `decimal_mark`")]
     CellCount { cells: usize, columns: usize },
     #[error("ends after {cells} cells, {needed} are needed; complete or delete the line")]
     ShortLine { cells: usize, needed: usize },
     #[error("the file breaks off in the middle of its last line; copy it again")]
     Truncated,
+    #[error(
+        "the file ends here without a line end, within or behind `{text}`, which has fewer digits than all numbers \
+         before it: it is most likely cut off; copy it again, or end the line if it is complete"
+    )]
+    CutNumber { text: String },
     #[error("a blank line between heights; without positions mark a missing height, say by NaN")]
     BlankLine,
     #[error("`{text}` is not a number{hint}")]

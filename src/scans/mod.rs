@@ -9,6 +9,9 @@ mod decode;
 pub mod description;
 pub mod error;
 pub mod file;
+mod last_number;
+mod lines;
+mod source;
 mod text;
 pub mod text_shape;
 mod thousands;
@@ -21,10 +24,12 @@ use std::path::Path;
 pub use description::TextFormat;
 pub use error::{ScanError, ScanProblem};
 pub use file::{FileError, FileProblem};
-pub use text::{parse_text, read_text};
+pub use source::Source;
+pub use text::{parse_text, read_source, read_text};
 
-/// Largest file that is read, in bytes: one is held in memory as a whole, beside its points. As
-/// text these are some 80 million points, 80 m of road in steps of 1 µm.
+/// Largest file of which all bytes are in memory, in bytes: X3P, whose directory is at its end,
+/// texts of Gwyddion, whose spacing follows from the number of rows, and what is described or
+/// converted. All others are read as streams and may be larger.
 pub const LARGEST_FILE: u64 = 1 << 30;
 
 /// The bytes of a file of at most [`LARGEST_FILE`] bytes.
@@ -62,10 +67,37 @@ pub fn admit_size(bytes: u64) -> io::Result<()> {
     Err(io::Error::new(
         io::ErrorKind::FileTooLarge,
         format!(
-            "the file has {} MB or more, and files of at most {} MB are read; cut it into parts, each of which is a \
-             scan, or export fewer points from the instrument",
+            "the file has {} MB or more, and at most {} MB are held in memory; export fewer points, cut it into parts, \
+             each of which is a scan, or save it as SDF (binary), uncompressed Digital Surf, ERD or text of two columns, \
+             which are read row by row by `run` and `inspect`",
             mega(bytes),
             mega(LARGEST_FILE)
         ),
     ))
+}
+
+/// Whether a large file is worth reading to its end, by its start: whether it is one of those
+/// that are read as streams, and whether it holds what it declares.
+///
+/// # Errors
+/// As [`admit_size`]; [`io::ErrorKind::InvalidData`] that says what is wrong with the file.
+pub fn admit_source(source: Source<'_>) -> io::Result<()> {
+    let length = source.length();
+    if length <= LARGEST_FILE {
+        return Ok(());
+    }
+    let invalid = |problem: String| io::Error::new(io::ErrorKind::InvalidData, problem);
+    match file::Family::detect(source.start()) {
+        Some(file::Family::X3p | file::Family::Gwyddion) => admit_size(length),
+        Some(_) => file::open(source).map(|_| ()).map_err(|problem| invalid(problem.to_string())),
+        None if is_binary(source.start()) => {
+            Err(invalid(format!("{} (of {length} bytes)", ScanProblem::Binary)))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Whether bytes are no text: zeros are in no encoding but UTF-16, where every second is one.
+fn is_binary(start: &[u8]) -> bool {
+    start.windows(4).any(|four| four == [0; 4])
 }

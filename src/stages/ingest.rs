@@ -12,13 +12,13 @@ pub use picture::fault_picture;
 use super::characterise::AVERAGE;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{
-    ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Input, Metadata,
-    Row, RunView, SchemaVersion, Storage,
+    ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Digesting,
+    Input, Metadata, Row, RunView, SchemaVersion, Storage,
 };
 use crate::recipe::{Violation, demand};
-use crate::scans::file::{CHANNELS, Family, Grid, MapLines, parse_channel};
+use crate::scans::file::{CHANNELS, Family, Grid, MapLines, open_channel};
 use crate::scans::text_shape::TextShape;
-use crate::scans::{TextFormat, admit, parse_text, read_bytes};
+use crate::scans::{FileError, FileProblem, Source, TextFormat, admit_source, read_source};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use faults::fault_rows;
 use picture::write_pictures;
@@ -250,6 +250,14 @@ pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
         .collect()
 }
 
+/// Before anything is read: a device may have no end, a large file takes long to digest.
+fn admit(path: &Path) -> std::io::Result<()> {
+    crate::files::admit(path, u64::MAX)?;
+    let file = std::fs::File::open(path)?;
+    let length = file.metadata()?.len();
+    admit_source(Source::new(file, length)?)
+}
+
 fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
     let io = |source| StageError::ScanIo { path: path.to_owned(), source };
     if !std::fs::metadata(path).map_err(io)?.is_dir() {
@@ -301,13 +309,6 @@ struct ReadFile<T> {
     repeated: Option<String>,
 }
 
-impl<T> ReadFile<T> {
-    fn with<U>(self, scans: Vec<U>) -> ReadFile<U> {
-        let Self { is_text, contradictions, channels, is_erd, repeated, .. } = self;
-        ReadFile { scans, is_text, contradictions, channels, is_erd, repeated }
-    }
-}
-
 /// Reads and conditions the scan files and writes the results; returns warnings.
 ///
 /// # Errors
@@ -323,20 +324,10 @@ pub fn run(
         .par_iter()
         .map(|file| {
             context.check_interrupt()?;
-            let bytes = read_bytes(&file.path)
-                .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
-            if Digest::of_bytes(&bytes) != file.digest {
-                return Err(StageError::ScanChanged { path: file.path.clone() });
-            }
-            let read = read_scans(ingest, file, &bytes)?;
-            let scans = read
-                .scans
-                .iter()
-                .map(|scan| condition(scan, &ingest.conditioning))
-                .collect::<Result<Vec<_>, _>>()?;
+            let read = read_and_condition(ingest, file)?;
             let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
             (context.watch.progress)(count, files.len() as u64);
-            Ok(read.with(scans))
+            Ok(read)
         })
         .collect();
     let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
@@ -369,53 +360,111 @@ pub fn run(
     Ok(warnings)
 }
 
-/// The line scans of a file: one, or the chosen lines of a height map.
+/// Conditions the line scans of a file while it is read; nothing of it counts unless all that was
+/// read is what was digested before.
+fn read_and_condition(
+    ingest: &Ingest,
+    file: &ScanFile,
+) -> Result<ReadFile<Conditioned>, StageError> {
+    let io = |source| StageError::ScanIo { path: file.path.clone(), source };
+    let opened = std::fs::File::open(&file.path).map_err(io)?;
+    let length = opened.metadata().map_err(io)?.len();
+    let mut reader = Digesting::new(opened);
+    let source = Source::new(&mut reader, length).map_err(io)?;
+    let read = read_scans(ingest, file, source);
+    if reader.finish().map_err(io)? != file.digest {
+        return Err(StageError::ScanChanged { path: file.path.clone() });
+    }
+    read
+}
+
+/// The line scans of a file: one, or the chosen lines of a height map, each conditioned as soon
+/// as it is complete.
 fn read_scans(
     ingest: &Ingest,
     file: &ScanFile,
-    bytes: &[u8],
-) -> Result<ReadFile<RawScan>, StageError> {
+    source: Source<'_>,
+) -> Result<ReadFile<Conditioned>, StageError> {
     /// Enough for the names of the columns and some points.
     const START: usize = 1 << 16;
     let name = file.path.display().to_string();
-    if let Some(scan) = parse_channel(&name, bytes, ingest.erd_channel).map_err(Box::new)? {
-        let lines = match (scan.grid, ingest.map_lines) {
-            (_, Some(lines)) => lines,
-            (Grid::Profile { .. }, None) => MapLines::Rows,
-            (Grid::Map { columns, rows, .. }, None) => {
-                return Err(StageError::MapLines { path: file.path.clone(), rows, columns });
-            }
-        };
-        let mut scans = scan.line_scans(&file.name, lines, ingest.map_line_step);
-        if ingest.invert_instrument_heights {
-            let heights = scans.iter_mut().flat_map(|scan| &mut scan.heights);
-            heights.for_each(|height| *height = -*height);
-        }
-        let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
-        return Ok(ReadFile {
-            repeated: scans.iter().find_map(|scan| warnings::repeated(scan, None)),
-            scans,
-            is_text: false,
-            contradictions: Vec::new(),
-            channels: said(CHANNELS).map(|(_, channels)| channels.clone()),
-            is_erd: Family::detect(bytes) == Some(Family::Erd),
+    let file_error = |problem| Box::new(FileError { file: name.clone(), problem }).into();
+    if Family::detect(source.start()).is_some() {
+        return read_instrument(ingest, file, source).map_err(|failure| match failure {
+            Failure::File(problem) => file_error(problem),
+            Failure::Stage(error) => *error,
         });
     }
     let Some(format) = &ingest.text else {
         return Err(StageError::NoTextFormat { path: file.path.clone() });
     };
-    let mut scan = parse_text(&name, bytes, format)?;
+    let shape = TextShape::of(&source.start()[..source.start().len().min(START)]);
+    let mut scan = read_source(&name, source, format)?;
     scan.name.clone_from(&file.name);
-    let shape = TextShape::of(&bytes[..bytes.len().min(START)]);
     let contradictions = shape.map(|shape| shape.contradictions(format)).unwrap_or_default();
     Ok(ReadFile {
         repeated: warnings::repeated(&scan, Some(format)),
-        scans: vec![scan],
+        scans: vec![condition(&scan, &ingest.conditioning)?],
         is_text: true,
         contradictions,
         channels: None,
         is_erd: false,
     })
+}
+
+/// Why the lines of an instrument file are not there.
+enum Failure {
+    File(FileProblem),
+    Stage(Box<StageError>),
+}
+
+impl From<FileProblem> for Failure {
+    fn from(problem: FileProblem) -> Self {
+        Self::File(problem)
+    }
+}
+
+impl<E: Into<StageError>> From<Box<E>> for Failure {
+    fn from(error: Box<E>) -> Self {
+        Self::Stage(Box::new((*error).into()))
+    }
+}
+
+fn read_instrument(
+    ingest: &Ingest,
+    file: &ScanFile,
+    source: Source<'_>,
+) -> Result<ReadFile<Conditioned>, Failure> {
+    let mut read = ReadFile {
+        scans: Vec::new(),
+        is_text: false,
+        contradictions: Vec::new(),
+        channels: None,
+        is_erd: Family::detect(source.start()) == Some(Family::Erd),
+        repeated: None,
+    };
+    let Some(scan) = open_channel(source, ingest.erd_channel)? else { return Ok(read) };
+    let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
+    read.channels = said(CHANNELS).map(|(_, channels)| channels.clone());
+    let lines = match (scan.grid, ingest.map_lines) {
+        (_, Some(lines)) => lines,
+        (Grid::Profile { .. }, None) => MapLines::Rows,
+        (Grid::Map { columns, rows, .. }, None) => {
+            let path = file.path.clone();
+            return Err(Box::new(StageError::MapLines { path, rows, columns }).into());
+        }
+    };
+    scan.lines(&file.name, lines, ingest.map_line_step, &mut |mut line: RawScan| {
+        if ingest.invert_instrument_heights {
+            line.heights.iter_mut().for_each(|height| *height = -*height);
+        }
+        if read.repeated.is_none() {
+            read.repeated = warnings::repeated(&line, None);
+        }
+        read.scans.push(condition(&line, &ingest.conditioning).map_err(Box::new)?);
+        Ok::<(), Failure>(())
+    })?;
+    Ok(read)
 }
 
 fn check_equal_grids<'a>(

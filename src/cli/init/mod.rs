@@ -179,6 +179,9 @@ fn from_scan(file: &Path) -> Result<FromScan, CliError> {
         let name = file.display().to_string();
         let read = parse_file(&name, &bytes)?;
         let scan = read.map(|file| file.line_scans("scan", MapLines::Rows, 1));
+        let scan = scan
+            .transpose()
+            .map_err(|problem| CliError::input(format!("{}: {problem}", file.display())))?;
         let scan = scan.and_then(|scans| scans.into_iter().next());
         return Ok(ladder(scan, String::new(), Vec::new()));
     }

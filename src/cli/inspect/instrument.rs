@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cli::output::{aligned, significant};
-use crate::scans::file::{Grid, ScanFile};
+use crate::scans::file::{Grid, OpenScan, Statistics};
 
 /// An instrument file, summarised.
 #[derive(Debug, Serialize)]
@@ -18,7 +18,7 @@ pub(super) struct InstrumentFile {
     detected: String,
     /// Of a profile.
     #[serde(skip_serializing_if = "Option::is_none")]
-    points: Option<usize>,
+    points: Option<u64>,
     /// Rows and columns of a map.
     #[serde(skip_serializing_if = "Option::is_none")]
     shape: Option<[usize; 2]>,
@@ -30,14 +30,14 @@ pub(super) struct InstrumentFile {
     mean_m: f64,
     /// Of the population of valid points.
     std_m: f64,
-    missing: usize,
+    missing: u64,
     instrument: BTreeMap<String, String>,
 }
 
 impl InstrumentFile {
-    pub(super) fn of(path: &Path, scan: &ScanFile) -> Self {
+    pub(super) fn of(path: &Path, scan: &OpenScan<'_>, statistics: &Statistics) -> Self {
         let (points, shape, spacing_m, spacing_y_m) = match scan.grid {
-            Grid::Profile { spacing } => (Some(scan.heights.len()), None, spacing, None),
+            Grid::Profile { spacing } => (Some(statistics.points()), None, spacing, None),
             Grid::Map { columns, rows, spacing_x, spacing_y } => {
                 (None, Some([rows, columns]), spacing_x, Some(spacing_y))
             }
@@ -50,9 +50,9 @@ impl InstrumentFile {
             shape,
             spacing_m,
             spacing_y_m,
-            mean_m: scan.mean(),
-            std_m: scan.standard_deviation(),
-            missing: scan.missing(),
+            mean_m: statistics.mean(),
+            std_m: statistics.standard_deviation(),
+            missing: statistics.missing(),
             instrument: scan.instrument.iter().cloned().collect(),
         }
     }
@@ -60,7 +60,7 @@ impl InstrumentFile {
     pub(super) fn text(&self) -> String {
         let (shape, points) = match (self.points, self.shape) {
             (_, Some([rows, columns])) => {
-                (format!("height map, {rows} rows of {columns} points"), rows * columns)
+                (format!("height map, {rows} rows of {columns} points"), (rows * columns) as u64)
             }
             (points, None) => {
                 let points = points.unwrap_or_default();

@@ -17,8 +17,9 @@ use serde::Serialize;
 
 use super::CliError;
 use super::output::{json, print};
-use crate::scans::file::{Family, Grid, ScanFile, read_channel};
+use crate::scans::file::{Family, Grid, ScanFile, open_channel, read_channel};
 use crate::scans::text_shape::TextShape as Shape;
+use crate::scans::{FileError, Source};
 use artifact::{Arrays, Table};
 use folder::{ManifestFile, Run, Stage};
 use instrument::InstrumentFile;
@@ -149,12 +150,15 @@ pub(super) fn read_instrument(
     Ok(read_channel(path, channel)?)
 }
 
-/// Reads the instrument file at `path`.
+/// Reads the instrument file at `path`, of which some thousand heights at a time are in memory.
 fn instrument_file(path: &Path, channel: Option<usize>) -> Result<Finding, CliError> {
-    let scan = read_instrument(path, channel)?;
+    let wrong = |problem| CliError::input(FileError { file: path.display().to_string(), problem });
+    let source = Source::open(path).map_err(|error| wrong(error.into()))?;
+    let scan = open_channel(source, channel).map_err(wrong)?;
     // The first bytes have told the family, and the file is read again.
-    let scan = scan.ok_or_else(|| foreign(path, "changes while it is read"))?;
-    let file = InstrumentFile::of(path, &scan);
+    let mut scan = scan.ok_or_else(|| foreign(path, "changes while it is read"))?;
+    let statistics = scan.statistics().map_err(wrong)?;
+    let file = InstrumentFile::of(path, &scan, &statistics);
     Ok(match scan.grid {
         Grid::Profile { .. } => Finding::Profile(file),
         Grid::Map { .. } => Finding::Map(file),

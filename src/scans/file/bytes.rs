@@ -33,7 +33,7 @@ impl<'a> Cursor<'a> {
     ) -> Result<&'a [u8], FileProblem> {
         let rest = self.bytes.get(self.offset..).unwrap_or_default();
         let found = usize::try_from(length).ok().and_then(|length| rest.get(..length));
-        let (offset, total) = (self.offset, self.bytes.len());
+        let (offset, total) = (self.offset, self.bytes.len() as u64);
         let part =
             found.ok_or(FileProblem::Truncated { what, offset, needed: length, length: total })?;
         self.offset += part.len();
@@ -118,38 +118,55 @@ impl Number {
         }
     }
 
-    /// All numbers in `bytes`; an incomplete last one is left out.
-    pub(super) fn decode(self, bytes: &[u8]) -> Vec<f64> {
-        fn each<const N: usize>(bytes: &[u8], value: impl Fn([u8; N]) -> f64) -> Vec<f64> {
-            bytes.as_chunks::<N>().0.iter().map(|chunk| value(*chunk)).collect()
+    /// Appends all numbers in `bytes` to `values`; an incomplete last one is left out.
+    pub(super) fn decode(self, bytes: &[u8], values: &mut Vec<f64>) {
+        fn each<const N: usize>(
+            bytes: &[u8],
+            values: &mut Vec<f64>,
+            value: impl Fn([u8; N]) -> f64,
+        ) {
+            values.extend(bytes.as_chunks::<N>().0.iter().map(|chunk| value(*chunk)));
         }
         match self {
-            Self::U8 => each(bytes, |b| f64::from(u8::from_le_bytes(b))),
-            Self::U16 => each(bytes, |b| f64::from(u16::from_le_bytes(b))),
-            Self::U32 => each(bytes, |b| f64::from(u32::from_le_bytes(b))),
-            Self::I8 => each(bytes, |b| f64::from(i8::from_le_bytes(b))),
-            Self::I16 => each(bytes, |b| f64::from(i16::from_le_bytes(b))),
-            Self::I32 => each(bytes, |b| f64::from(i32::from_le_bytes(b))),
-            Self::F32 => each(bytes, |b| f64::from(f32::from_le_bytes(b))),
-            Self::F64 => each(bytes, f64::from_le_bytes),
+            Self::U8 => each(bytes, values, |b| f64::from(u8::from_le_bytes(b))),
+            Self::U16 => each(bytes, values, |b| f64::from(u16::from_le_bytes(b))),
+            Self::U32 => each(bytes, values, |b| f64::from(u32::from_le_bytes(b))),
+            Self::I8 => each(bytes, values, |b| f64::from(i8::from_le_bytes(b))),
+            Self::I16 => each(bytes, values, |b| f64::from(i16::from_le_bytes(b))),
+            Self::I32 => each(bytes, values, |b| f64::from(i32::from_le_bytes(b))),
+            Self::F32 => each(bytes, values, |b| f64::from(f32::from_le_bytes(b))),
+            Self::F64 => each(bytes, values, f64::from_le_bytes),
         }
+    }
+}
+
+/// Whether a file of `length` bytes holds `needed` from `offset` on.
+pub(super) fn holds(
+    length: u64,
+    offset: usize,
+    needed: u64,
+    what: &'static str,
+) -> Result<(), FileProblem> {
+    match length.checked_sub(offset as u64) {
+        Some(rest) if needed <= rest => Ok(()),
+        _ => Err(FileProblem::Truncated { what, offset, needed, length }),
     }
 }
 
 /// Checks a declared number of points before anything is made of it.
 pub(super) fn count(place: Place, columns: u64, rows: u64) -> Result<(usize, usize), FileProblem> {
+    /// A terabyte of the shortest numbers; products with the length of a number do not overflow.
+    const MOST: u64 = 1 << 40;
     if columns == 0 || rows == 0 {
         let found = format!("{rows} rows of {columns} points");
         return Err(unexpected(place, "the size of the scan", found, "one point or more"));
     }
-    let points = columns.saturating_mul(rows);
+    let size = columns.saturating_mul(rows);
     match (usize::try_from(columns), usize::try_from(rows)) {
-        (Ok(columns), Ok(rows)) if points <= super::LARGEST_POINTS => Ok((columns, rows)),
-        _ => Err(FileProblem::TooLarge {
-            place,
-            what: "the number of points",
-            size: points,
-            limit: super::LARGEST_POINTS,
-        }),
+        (Ok(columns), Ok(rows)) if size <= MOST => Ok((columns, rows)),
+        _ => {
+            let what = "the number of points";
+            Err(FileProblem::TooLarge { place, what, size, limit: MOST })
+        }
     }
 }

@@ -4,11 +4,13 @@
 //! A height is `z = raw spacing_z + offset_z` in the unit of the step. Where the header says that
 //! there are non-measured points, they hold its smallest raw height less 2.
 
-use super::bytes::{Cursor, Number, count};
+use super::bytes::{Cursor, Number, count, holds};
 use super::error::{FileProblem, Place, unexpected};
-use super::{ScanFile, grid, spacing};
+use super::heights::{Binary, Checked};
+use super::{OpenScan, grid, packed, spacing};
+use crate::scans::Source;
 use flate2::read::ZlibDecoder;
-use std::io::Read;
+use std::io::{self, Read, Take};
 
 const PLAIN: &[u8] = b"DIGITAL SURF";
 const COMPRESSED: &[u8] = b"DSCOMPRESSED";
@@ -49,24 +51,27 @@ struct Header {
     instrument: Vec<(String, String)>,
 }
 
-/// Reads a Digital Surf file.
-pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
-    let header = read_header(bytes)?;
-    let compressed = bytes.starts_with(COMPRESSED);
-    let length = header.columns as u64 * header.rows as u64 * header.number.bytes() as u64;
-    let mut cursor = Cursor::at(bytes, header.data);
-    let raw = if compressed {
-        header.number.decode(&inflate(&mut cursor, length)?)
+/// Reads the header of a Digital Surf file.
+pub(super) fn open(source: Source<'_>) -> Result<OpenScan<'_>, FileProblem> {
+    let header = read_header(source.start())?;
+    let compressed = source.start().starts_with(COMPRESSED);
+    let points = header.columns as u64 * header.rows as u64;
+    let needed = points * header.number.bytes() as u64;
+    let ([x, y, z], offset_z, missing) = (header.steps, header.offset_z, header.missing);
+    let metres = move |raw| if missing == Some(raw) { f64::NAN } else { raw * z + offset_z };
+    let (number, length, offset) = (header.number, source.length(), header.data);
+    let place = (offset, length);
+    let heights = if compressed {
+        let packed = length.saturating_sub(offset as u64);
+        packed::admit(Place::Byte(offset::COLUMNS), packed, needed)?;
+        let streams = Streams::open(source, offset, needed)?;
+        Checked::new(Binary::new(streams, number, points, metres, place))
     } else {
-        header.number.decode(cursor.take(length, "the heights")?)
+        holds(length, offset, needed, "the heights")?;
+        Checked::new(Binary::new(source.from(offset), number, points, metres, place))
     };
-    let [x, y, z] = header.steps;
-    let heights = raw
-        .into_iter()
-        .map(|raw| if header.missing == Some(raw) { f64::NAN } else { raw * z + header.offset_z })
-        .collect();
     let signature = if compressed { "DSCOMPRESSED" } else { "DIGITAL SURF" };
-    Ok(ScanFile {
+    Ok(OpenScan {
         format: format!("Digital Surf {}", header.kind),
         detected: format!(
             "the first bytes are `{signature}`: Digital Surf {}, {}compressed, heights as {:?}",
@@ -75,8 +80,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
             header.number
         ),
         grid: grid(header.columns, header.rows, x, y),
-        heights,
         instrument: header.instrument,
+        declared: Some((points, Place::Byte(offset::COLUMNS))),
+        heights,
     })
 }
 
@@ -178,36 +184,78 @@ fn instrument(bytes: &[u8], comment: u16) -> Result<Vec<(String, String)>, FileP
 }
 
 /// The heights of a compressed file: number of streams, their lengths, the streams.
-fn inflate(cursor: &mut Cursor<'_>, length: u64) -> Result<Vec<u8>, FileProblem> {
-    const MOST_STREAMS: u32 = 1024;
-    let place = cursor.place();
-    let streams = cursor.u32("the number of streams")?;
-    if streams > MOST_STREAMS {
-        let (size, limit) = (u64::from(streams), u64::from(MOST_STREAMS));
-        return Err(FileProblem::TooLarge { place, what: "the number of streams", size, limit });
-    }
-    let mut directory = Vec::new();
-    for _ in 0..streams {
-        let plain = cursor.u32("length of a stream")?;
-        directory.push((u64::from(plain), u64::from(cursor.u32("packed length of a stream")?)));
-    }
-    let declared: u64 = directory.iter().map(|(plain, _)| plain).sum();
-    if declared != length {
-        return Err(unexpected(place, "the length of the streams", declared, length));
-    }
-    let mut heights = Vec::new();
-    for (plain, packed) in directory {
+struct Streams<'a> {
+    /// Lengths of the streams that follow, plain and packed.
+    directory: std::vec::IntoIter<(u64, u64)>,
+    /// The stream that is unpacked and what is left of it, then the bytes behind it.
+    stream: ZlibDecoder<Take<Box<dyn Read + 'a>>>,
+    left: u64,
+}
+
+impl<'a> Streams<'a> {
+    fn open(source: Source<'a>, offset: usize, length: u64) -> Result<Self, FileProblem> {
+        const MOST_STREAMS: u32 = 1024;
+        let mut cursor = Cursor::at(source.start(), offset);
         let place = cursor.place();
-        let packed = cursor.take(packed, "a stream")?;
-        let before = heights.len() as u64;
-        // Memory grows with what is decoded, and no further than the stream declares.
-        ZlibDecoder::new(packed).take(plain).read_to_end(&mut heights).map_err(|error| {
-            FileProblem::Damaged { place: place.clone(), reason: error.to_string() }
-        })?;
-        let decoded = heights.len() as u64 - before;
-        if decoded != plain {
-            return Err(unexpected(place, "the length of a stream", decoded, plain));
+        let streams = cursor.u32("the number of streams")?;
+        if streams > MOST_STREAMS {
+            let (size, limit) = (u64::from(streams), u64::from(MOST_STREAMS));
+            return Err(FileProblem::TooLarge {
+                place,
+                what: "the number of streams",
+                size,
+                limit,
+            });
         }
+        let mut directory = Vec::new();
+        for _ in 0..streams {
+            let plain = cursor.u32("length of a stream")?;
+            directory.push((u64::from(plain), u64::from(cursor.u32("packed length of a stream")?)));
+        }
+        let declared: u64 = directory.iter().map(|(plain, _)| plain).sum();
+        if declared != length {
+            return Err(unexpected(place, "the length of the streams", declared, length));
+        }
+        let packed: u64 = directory.iter().map(|(_, packed)| packed).sum();
+        holds(source.length(), cursor.offset(), packed, "the streams")?;
+        let offset = cursor.offset();
+        let rest: Box<dyn Read + 'a> = Box::new(source.from(offset));
+        let stream = ZlibDecoder::new(rest.take(0));
+        Ok(Self { directory: directory.into_iter(), stream, left: 0 })
     }
-    Ok(heights)
+
+    /// Goes on to the next stream; false if there is none.
+    fn next(&mut self) -> io::Result<bool> {
+        let packed = self.stream.get_mut();
+        io::copy(packed, &mut io::sink())?;
+        let Some((plain, packed_length)) = self.directory.next() else { return Ok(false) };
+        let done: Take<Box<dyn Read + 'a>> = (Box::new(io::empty()) as Box<dyn Read + 'a>).take(0);
+        let rest = std::mem::replace(packed, done).into_inner();
+        self.stream = ZlibDecoder::new(rest.take(packed_length));
+        self.left = plain;
+        Ok(true)
+    }
+}
+
+impl Read for Streams<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while self.left == 0 {
+            if !self.next()? {
+                return Ok(0);
+            }
+        }
+        let most = buffer.len().min(usize::try_from(self.left).unwrap_or(usize::MAX));
+        let read = self.stream.read(&mut buffer[..most])?;
+        if read == 0 && most > 0 {
+            let reason = format!("a stream ends {} bytes before its length", self.left);
+            return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        }
+        self.left -= read as u64;
+        // The decoder compares the checksum where it comes to the end.
+        if self.left == 0 && self.stream.read(&mut [0])? > 0 {
+            let reason = "a stream goes on behind its length";
+            return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        }
+        Ok(read)
+    }
 }

@@ -5,70 +5,86 @@
 //! Keywords of eight letters follow up to `END`, then a line of one number per channel for each
 //! sample.
 
-use super::bytes::count;
-use super::error::{FileProblem, Place, unexpected};
-use super::{Grid, ScanFile, metres_of, spacing};
+use super::bytes::{count, holds};
+use super::error::{FileProblem, Place, of_line, shorten, unexpected};
+use super::heights::{Checked, Heights};
+use super::{Grid, OpenScan, metres_of, spacing};
+use crate::scans::Source;
+use crate::scans::last_number::LastNumber;
+use crate::scans::lines::Lines;
+use encoding_rs::WINDOWS_1252;
+use std::io::Read;
 
-/// Name of what [`ScanFile::instrument`] says of the channels of a file that has several of heights.
+/// Name of what [`ScanFile::instrument`](super::ScanFile::instrument) says of the channels of a file that has several of
+/// heights.
 pub const CHANNELS: &str = "channels of heights";
 
-/// Reads an ERD file. The profile is the channel asked for, by its number from 1, else the first of a
-/// length.
-pub(super) fn read(bytes: &[u8], chosen: Option<usize>) -> Result<ScanFile, FileProblem> {
-    let (text, _) = encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes);
-    let lines: Vec<&str> = text.lines().collect();
-    let layout = Layout::read(lines.get(1).copied().unwrap_or_default())?;
-    let end =
-        lines.iter().position(|line| line.trim().eq_ignore_ascii_case("END")).ok_or_else(|| {
-            unexpected(Place::Line(lines.len()), "the header", "not ended", "a line END")
-        })?;
-    let keywords = Keywords { lines: lines.get(2..end).unwrap_or_default() };
-    let (place, x_unit) = keywords.find("XUNITS").unwrap_or((2, String::new()));
-    let x_metres = metres_of(&x_unit).ok_or_else(|| {
+/// Reads the header of an ERD file. The profile is the channel asked for, by its number from 1, else the first
+/// of a length.
+pub(super) fn open(source: Source<'_>, chosen: Option<usize>) -> Result<OpenScan<'_>, FileProblem> {
+    let length = source.length();
+    let mut lines = Lines::new(source.from(0));
+    let first = text_line(&mut lines)?.unwrap_or_default();
+    let layout = Layout::read(&text_line(&mut lines)?.unwrap_or_default())?;
+    let keywords = Keywords::read(&mut lines)?;
+    let (place, x_unit) = keywords.find("XUNITS").unwrap_or((2, ""));
+    let x_metres = metres_of(x_unit).ok_or_else(|| {
         let expected = "a length, such as m or ft";
-        unexpected(Place::Line(place), "the unit of x (XUNITS)", &x_unit, expected)
+        unexpected(Place::Line(place), "the unit of x (XUNITS)", x_unit, expected)
     })?;
     let spacing = spacing(Place::Line(2), layout.step * x_metres)?;
-    let (place, units) = keywords.find("UNITSNAM").unwrap_or((2, String::new()));
-    let profiles = profiles(&units, layout.channels);
+    let (place, units) = keywords.find("UNITSNAM").unwrap_or((2, ""));
+    let profiles = profiles(units, layout.channels);
     let names = keywords.find("SHORTNAM").map(|(_, names)| names).unwrap_or_default();
     let (profile, metres) = choose(&profiles, chosen).ok_or_else(|| match chosen {
         Some(number) => unexpected(
             Place::Line(place),
             "the channel asked for",
             number,
-            format!("a channel of heights: {}", listed(&profiles, &names)),
+            format!("a channel of heights: {}", listed(&profiles, names)),
         ),
         None => unexpected(
             Place::Line(place),
             "the units (UNITSNAM)",
-            &units,
+            units,
             "a length, such as mm or in",
         ),
     })?;
-    let heights = layout.heights(&lines, end + 1, profile, metres)?;
+    if let Some(samples) = layout.samples {
+        // A digit each, and a blank or line end between them.
+        let numbers = samples as u64 * layout.channels as u64;
+        holds(length, first.len(), 2 * numbers - 1, "the profile")?;
+    }
     let mut instrument: Vec<(String, String)> =
         [("TITLE", "title"), ("DATE", "created"), ("INSTRUMT", "model")]
             .into_iter()
-            .filter_map(|(key, name)| Some((name.to_owned(), keywords.find(key)?.1)))
+            .filter_map(|(key, name)| Some((name.to_owned(), keywords.find(key)?.1.to_owned())))
             .collect();
     if !names.is_empty() {
-        instrument.push(("channel".into(), columns_of_eight(&names, profile)));
+        instrument.push(("channel".into(), columns_of_eight(names, profile)));
     }
     if profiles.len() > 1 {
-        instrument.push((CHANNELS.into(), listed(&profiles, &names)));
+        instrument.push((CHANNELS.into(), listed(&profiles, names)));
     }
-    Ok(ScanFile {
+    Ok(OpenScan {
         format: "ERD".into(),
         detected: format!(
             "the first line is `{}`: road profile as text, channel {} of {} read",
-            lines.first().copied().unwrap_or_default().trim(),
+            first.trim(),
             profile + 1,
             layout.channels
         ),
         grid: Grid::Profile { spacing },
-        heights,
         instrument,
+        declared: layout.samples.map(|samples| (samples as u64, Place::Line(2))),
+        heights: Checked::new(Samples {
+            lines,
+            layout,
+            profile,
+            metres,
+            read: 0,
+            numbers: LastNumber::default(),
+        }),
     })
 }
 
@@ -94,6 +110,15 @@ fn listed(profiles: &[(usize, f64)], names: &str) -> String {
     profiles.iter().map(of).collect::<Vec<_>>().join(", ")
 }
 
+/// The next line, `None` at the end.
+fn text_line(lines: &mut Lines<impl Read>) -> Result<Option<String>, FileProblem> {
+    if !lines.advance().map_err(|error| of_line(error, lines.number() + 1, "a line end"))? {
+        return Ok(None);
+    }
+    let (text, _) = WINDOWS_1252.decode_without_bom_handling(lines.line());
+    Ok(Some(text.into_owned()))
+}
+
 struct Layout {
     channels: usize,
     /// `None` where the file leaves it open.
@@ -104,8 +129,10 @@ struct Layout {
 impl Layout {
     fn read(line: &str) -> Result<Self, FileProblem> {
         const MOST_CHANNELS: u64 = 1024;
+        /// Fields of the line that are looked at.
+        const FIELDS: usize = 6;
         let place = || Place::Line(2);
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        let cells: Vec<&str> = line.split(',').map(str::trim).take(FIELDS).collect();
         let cell = |place_in_line: usize, what| {
             let text = cells.get(place_in_line).copied().unwrap_or_default();
             text.parse::<f64>().map_err(|_| unexpected(place(), what, text, "a number"))
@@ -139,54 +166,107 @@ impl Layout {
         }
         Ok(Self { channels: channels as usize, samples, step: cell(5, "the step of x")? })
     }
+}
 
-    fn heights(
-        &self,
-        lines: &[&str],
-        start: usize,
-        channel: usize,
-        metres: f64,
-    ) -> Result<Vec<f64>, FileProblem> {
-        let mut heights = Vec::new();
-        for (index, line) in lines.iter().enumerate().skip(start) {
-            let place = || Place::Line(index + 1);
-            let words = line.split(|c: char| c == ',' || c.is_whitespace());
-            let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-            if words.is_empty() {
-                continue;
+/// A line of one number per channel for each sample.
+struct Samples<R> {
+    lines: Lines<R>,
+    layout: Layout,
+    profile: usize,
+    metres: f64,
+    read: usize,
+    numbers: LastNumber,
+}
+
+impl<R: Read> Samples<R> {
+    /// The height of a line, `None` for a blank one.
+    fn height(&mut self, line: &str) -> Result<Option<f64>, FileProblem> {
+        let place = || Place::Line(self.lines.number());
+        let words = line.split(|c: char| c == ',' || c.is_whitespace());
+        let (mut cells, mut height, mut last) = (0, "", "");
+        for word in words.filter(|word| !word.is_empty()) {
+            if cells == self.profile {
+                height = word;
             }
-            if words.len() != self.channels {
-                return Err(unexpected(place(), "the number of cells", words.len(), self.channels));
-            }
-            let value: f64 = words[channel]
-                .parse()
-                .map_err(|_| unexpected(place(), "a height", words[channel], "a number"))?;
-            heights.push(value * metres);
+            (cells, last) = (cells + 1, word);
         }
-        match self.samples {
-            Some(samples) if samples != heights.len() => {
-                let place = Place::Line(lines.len());
-                Err(unexpected(place, "the number of samples", heights.len(), samples))
-            }
-            _ => Ok(heights),
+        if cells == 0 {
+            return Ok(None);
         }
+        if cells != self.layout.channels {
+            return Err(unexpected(place(), "the number of cells", cells, self.layout.channels));
+        }
+        let value: f64 =
+            height.parse().map_err(|_| unexpected(place(), "a height", height, "a number"))?;
+        if self.lines.is_ended() || !line.ends_with(last) {
+            self.numbers.note(last);
+        } else if self.profile + 1 == cells && self.numbers.is_cut(last) {
+            let (line, text) = (self.lines.number(), shorten(last));
+            return Err(FileProblem::CutNumber { line, text });
+        }
+        Ok(Some(value * self.metres))
     }
 }
 
-/// Lines of a keyword of eight letters and its value.
-struct Keywords<'a> {
-    lines: &'a [&'a str],
+impl<R: Read> Heights for Samples<R> {
+    fn read(&mut self, part: &mut Vec<f64>) -> Result<(), FileProblem> {
+        const POINTS: usize = 1 << 13;
+        while part.len() < POINTS {
+            let Some(line) = text_line(&mut self.lines)? else {
+                return match self.layout.samples {
+                    Some(samples) if samples != self.read => {
+                        let place = Place::Line(self.lines.number());
+                        Err(unexpected(place, "the number of samples", self.read, samples))
+                    }
+                    _ => Ok(()),
+                };
+            };
+            let Some(height) = self.height(&line)? else { continue };
+            self.read += 1;
+            if let Some(samples) = self.layout.samples.filter(|samples| self.read > *samples) {
+                let (place, found) = (Place::Line(self.lines.number()), self.read);
+                let found = format!("{found} or more");
+                return Err(unexpected(place, "the number of samples", found, samples));
+            }
+            part.push(height);
+        }
+        Ok(())
+    }
 }
 
-impl Keywords<'_> {
+/// Values of the keywords that are read, with the numbers of their lines.
+struct Keywords {
+    found: Vec<(&'static str, usize, String)>,
+}
+
+impl Keywords {
+    /// Reads lines of a keyword of eight letters and its value up to the line `END`.
+    fn read(lines: &mut Lines<impl Read>) -> Result<Self, FileProblem> {
+        const READ: [&str; 6] = ["XUNITS", "UNITSNAM", "TITLE", "DATE", "INSTRUMT", "SHORTNAM"];
+        /// Names of 1024 channels.
+        const LONGEST: usize = 1 << 14;
+        let mut found: Vec<(&'static str, usize, String)> = Vec::new();
+        while let Some(line) = text_line(lines)? {
+            if line.trim().eq_ignore_ascii_case("END") {
+                return Ok(Self { found });
+            }
+            let (name, value) = line.split_at_checked(8).unwrap_or((&line, ""));
+            let keyword = READ.into_iter().find(|key| name.trim().eq_ignore_ascii_case(key));
+            let Some(keyword) = keyword else { continue };
+            // The first of several counts. A UNITSNAM keeps its blanks: they separate names of
+            // eight letters.
+            if !found.iter().any(|(known, ..)| *known == keyword) {
+                let value = value.trim_end().chars().take(LONGEST).collect();
+                found.push((keyword, lines.number(), value));
+            }
+        }
+        Err(unexpected(Place::Line(lines.number()), "the header", "not ended", "a line END"))
+    }
+
     /// Number of the line and value.
-    fn find(&self, keyword: &str) -> Option<(usize, String)> {
-        self.lines.iter().enumerate().find_map(|(index, line)| {
-            let (name, value) = line.split_at_checked(8).unwrap_or((line, ""));
-            // A UNITSNAM keeps its blanks: they separate names of eight letters.
-            (name.trim().eq_ignore_ascii_case(keyword))
-                .then(|| (index + 3, value.trim_end().to_owned()))
-        })
+    fn find(&self, keyword: &str) -> Option<(usize, &str)> {
+        let found = self.found.iter().find(|(known, ..)| *known == keyword);
+        found.map(|(_, line, value)| (*line, value.as_str()))
     }
 }
 

@@ -1,8 +1,8 @@
 //! What can be wrong with an instrument file.
 
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::scans::lines::LineError;
 use std::fmt;
-use std::path::Path;
 
 /// An instrument file that cannot be read: which one, where, what was found and what expected.
 #[derive(Debug, thiserror::Error)]
@@ -19,13 +19,6 @@ impl HasKind for FileError {
     fn kind(&self) -> ErrorKind {
         // A scan is a file of the user, whatever is wrong with it.
         ErrorKind::Input
-    }
-}
-
-impl FileError {
-    /// The same error, told of the file at `path`.
-    pub(crate) fn in_file(self, path: &Path) -> Self {
-        Self { file: path.display().to_string(), ..self }
     }
 }
 
@@ -75,7 +68,7 @@ pub enum FileProblem {
         /// Its length.
         needed: u64,
         /// Length of the file.
-        length: usize,
+        length: u64,
     },
     /// A value that the format does not allow there.
     #[error("{place}: {what} is {found}, expected {expected}")]
@@ -100,6 +93,57 @@ pub enum FileProblem {
         size: u64,
         /// The largest that is accepted.
         limit: u64,
+    },
+    /// More points than are held in memory, in the lines of a height map that are asked for.
+    #[error(
+        "every {step}. line of the height map makes {points} points, and at most {} are held in memory; take every \
+         {enough}. line (`map_line_step = {enough}`) or fewer",
+        super::LARGEST_POINTS
+    )]
+    TooManyLines {
+        /// Points of the lines.
+        points: u64,
+        /// Every how many lines one is asked for.
+        step: usize,
+        /// The smallest step that is read.
+        enough: u64,
+    },
+    /// Bytes that unpack to more than heights of an instrument do.
+    #[error(
+        "{place}: {packed} bytes unpack to {unpacked}, more than {} times as many: no scan is packed as tightly; ask \
+         where the file comes from, or save it without compression",
+        super::packed::LARGEST_RATIO
+    )]
+    Ratio {
+        /// Where they are.
+        place: Place,
+        /// Their number in the file.
+        packed: u64,
+        /// Their number in memory.
+        unpacked: u64,
+    },
+    /// A line or a word longer than any of a scan.
+    #[error(
+        "line {line}: it goes on for more than {limit} bytes without {end}, and a scan has no such line; export it again"
+    )]
+    Endless {
+        /// Number of the line, from 1.
+        line: usize,
+        /// Longest that is read, in bytes.
+        limit: usize,
+        /// What should stand there.
+        end: &'static str,
+    },
+    /// The file ends within a number, of which what is left is a number as well.
+    #[error(
+        "line {line}: the file ends here without a line end, within or behind `{text}`, which has fewer digits than all \
+         numbers before it: it is most likely cut off; copy it again, or end the line if it is complete"
+    )]
+    CutNumber {
+        /// Number of the line, from 1.
+        line: usize,
+        /// The number.
+        text: String,
     },
     /// The checksum of a part is not the one that the file states.
     #[error(
@@ -151,11 +195,19 @@ pub(super) fn unexpected(
 }
 
 /// The start of a text from a file, printable.
-fn shorten(text: &str) -> String {
+pub(super) fn shorten(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut start: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if text.chars().nth(LONGEST).is_some() {
         start.push_str("...");
     }
     format!("`{start}`")
+}
+
+/// What a line reader found, as a problem of the file.
+pub(super) fn of_line(error: LineError, line: usize, end: &'static str) -> FileProblem {
+    match error {
+        LineError::Io(error) => error.into(),
+        LineError::TooLong(limit) => FileProblem::Endless { line, limit, end },
+    }
 }

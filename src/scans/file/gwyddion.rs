@@ -5,8 +5,11 @@
 //! before the colons are translated; the numbers and units behind them are what counts.
 
 use super::bytes::count;
-use super::error::{FileProblem, Place, unexpected};
-use super::{ScanFile, grid, metres_of, spacing};
+use super::error::{FileProblem, Place, shorten, unexpected};
+use super::heights::Checked;
+use super::{OpenScan, grid, metres_of, spacing};
+use crate::scans::Source;
+use crate::scans::last_number::LastNumber;
 
 /// The first four lines, taken apart.
 struct Header<'a> {
@@ -47,11 +50,12 @@ pub(super) fn is_header(start: &[u8]) -> bool {
     start.starts_with(b"# ") && Header::read(&String::from_utf8_lossy(start)).is_some()
 }
 
-/// Reads a text of Gwyddion.
-pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
-    let text = match std::str::from_utf8(bytes) {
+/// Reads a text of Gwyddion, all of it: the spacing follows from the number of rows.
+pub(super) fn open(source: Source<'_>) -> Result<OpenScan<'_>, FileProblem> {
+    let bytes = source.whole()?;
+    let text = match std::str::from_utf8(&bytes) {
         Ok(text) => std::borrow::Cow::Borrowed(text),
-        Err(_) => encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes).0,
+        Err(_) => encoding_rs::WINDOWS_1252.decode_without_bom_handling(&bytes).0,
     };
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let header = Header::read(text).ok_or_else(|| {
@@ -66,13 +70,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
     let width = header.width.0 * metres(2, header.width.1)?;
     let height = header.height.0 * metres(3, header.height.1)?;
     let z = metres(4, header.unit)?;
-    let (columns, raw) = matrix(text)?;
+    let (columns, mut raw) = matrix(text)?;
     let rows = raw.len() / columns.max(1);
     let (columns, rows) = count(Place::Line(5), columns as u64, rows as u64)?;
     let spacing_x = spacing(Place::Line(2), width / columns as f64)?;
     let spacing_y = spacing(Place::Line(3), height / rows as f64)?;
     let instrument = vec![("channel".to_owned(), header.channel.to_owned())];
-    Ok(ScanFile {
+    raw.iter_mut().for_each(|raw| *raw *= z);
+    Ok(OpenScan {
         format: "Gwyddion text".into(),
         detected: format!(
             "four comment lines state width, height and unit `{}` before rows of numbers: image as \
@@ -80,7 +85,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
             header.unit
         ),
         grid: grid(columns, rows, spacing_x, spacing_y),
-        heights: raw.into_iter().map(|raw| raw * z).collect(),
+        declared: None,
+        heights: Checked::new(raw),
         instrument: instrument.into_iter().filter(|(_, value)| !value.is_empty()).collect(),
     })
 }
@@ -89,12 +95,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
 fn matrix(text: &str) -> Result<(usize, Vec<f64>), FileProblem> {
     let mut columns = 0;
     let mut raw = Vec::new();
+    let mut numbers = LastNumber::default();
+    let mut last = "";
     for (index, line) in text.lines().enumerate().skip(4) {
         let before = raw.len();
         for word in line.split_ascii_whitespace() {
             let place = Place::Line(index + 1);
             let value = number(word);
             raw.push(value.ok_or_else(|| unexpected(place, "a height", word, "a number"))?);
+            numbers.note(std::mem::replace(&mut last, word));
         }
         match raw.len() - before {
             0 => {}
@@ -106,6 +115,10 @@ fn matrix(text: &str) -> Result<(usize, Vec<f64>), FileProblem> {
                 return Err(unexpected(place, "the number of heights of a row", cells, expected));
             }
         }
+    }
+    if text.ends_with(last) && numbers.is_cut(last) {
+        let line = text.lines().count();
+        return Err(FileProblem::CutNumber { line, text: shorten(last) });
     }
     Ok((columns, raw))
 }

@@ -9,29 +9,41 @@
 //! | Gwyddion text | height map as text with its size and unit | manual of the software |
 //!
 //! The format is told by the content; the name of the file does not matter. Every size that a
-//! file declares is compared with what the file holds before memory is asked for.
+//! file declares is compared with what the file holds before memory is asked for: to read n bytes
+//! takes at most 32 MB, 24 n and 8 bytes a declared point. SDF, ERD and Digital Surf are read as
+//! streams, of which some thousand points at a time are in memory ([`open`]).
 
 mod bytes;
 mod digital_surf;
 mod erd;
 pub mod error;
 mod gwyddion;
+mod heights;
+mod lines;
+mod packed;
 mod sdf;
 mod sdf_write;
+mod statistics;
 #[cfg(test)]
 mod tests;
 mod x3p;
 
 pub use erd::CHANNELS;
 pub use error::{FileError, FileProblem, Place};
+pub use lines::MapLines;
 pub use sdf_write::write as write_sdf;
+pub use statistics::Statistics;
 pub use x3p::write as write_x3p;
 
+use super::Source;
 use crate::surface::RawScan;
 use error::unexpected;
+use heights::Checked;
+use lines::LineCollector;
 use std::path::Path;
 
-/// Largest number of points of a file, 2 GB of heights in memory.
+/// Largest number of points that are held in memory, 2 GB of heights. A larger map is read row
+/// by row, and its chosen lines may have as many.
 pub const LARGEST_POINTS: u64 = 1 << 28;
 
 /// Family of instrument files.
@@ -52,6 +64,9 @@ pub enum Family {
 impl Family {
     /// The family by the first bytes, `None` for all else.
     pub fn detect(start: &[u8]) -> Option<Self> {
+        /// Longer than any header, of which the first lines are decisive.
+        const ENOUGH: usize = 1 << 16;
+        let start = &start[..start.len().min(ENOUGH)];
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
         if sdf::Version::detect(start).is_some() {
             Some(Self::Sdf)
@@ -90,6 +105,88 @@ pub enum Grid {
     },
 }
 
+/// An instrument file whose heights are still to be read, row after row.
+pub struct OpenScan<'a> {
+    /// Name of the format with its variant, such as `SDF bISO-1.0`.
+    pub format: String,
+    /// How it was told, in words, with what of the file was decisive.
+    pub detected: String,
+    /// Spacing and shape.
+    pub grid: Grid,
+    /// What the file says of the instrument and the measurement: name and value.
+    pub instrument: Vec<(String, String)>,
+    /// Number of points that the file declares, and where.
+    declared: Option<(u64, Place)>,
+    heights: Checked<'a>,
+}
+
+impl OpenScan<'_> {
+    /// Reads all heights into memory.
+    ///
+    /// # Errors
+    /// [`FileProblem::TooLarge`] beyond [`LARGEST_POINTS`]; what is found in the heights.
+    pub fn whole(mut self) -> Result<ScanFile, FileProblem> {
+        let mut heights = Vec::new();
+        let mut part = Vec::new();
+        let points = match &self.declared {
+            Some((points, place)) => {
+                admit_points(*points, place.clone())?;
+                *points as usize
+            }
+            None => 0,
+        };
+        while self.heights.read(&mut part)? {
+            // Formats that are read at once give all of it: it need not be copied.
+            if heights.is_empty() && self.declared.is_none() {
+                heights = std::mem::take(&mut part);
+            } else {
+                // Not before the first of them are there: a stream may be none.
+                if heights.is_empty() {
+                    heights.reserve_exact(points);
+                }
+                heights.append(&mut part);
+            }
+            admit_points(heights.len() as u64, Place::Height(heights.len()))?;
+        }
+        let Self { format, detected, grid, instrument, .. } = self;
+        Ok(ScanFile { format, detected, grid, heights, instrument })
+    }
+
+    /// Gives the profile, or every `step`-th row or column of a map that holds a height, to
+    /// `each` as line scans, each as soon as it is complete: of the others nothing is kept. Those
+    /// of a map are named `name_row_0000` and so on, by their number in the file.
+    ///
+    /// # Errors
+    /// [`FileProblem::TooManyLines`], what is found in the heights, and those of `each`.
+    pub fn lines<E: From<FileProblem>>(
+        mut self,
+        name: &str,
+        lines: MapLines,
+        step: usize,
+        each: &mut dyn FnMut(RawScan) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut collector = LineCollector::new(name, self.grid, lines, step)?;
+        let mut part = Vec::new();
+        while self.heights.read(&mut part)? {
+            collector.take(&part, each)?;
+        }
+        collector.finish(each)
+    }
+
+    /// Reads the heights and keeps their number, mean and standard deviation alone.
+    ///
+    /// # Errors
+    /// What is found in the heights.
+    pub fn statistics(&mut self) -> Result<Statistics, FileProblem> {
+        let mut statistics = Statistics::default();
+        let mut part = Vec::new();
+        while self.heights.read(&mut part)? {
+            statistics.take(&part);
+        }
+        Ok(statistics)
+    }
+}
+
 /// What an instrument file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScanFile {
@@ -105,18 +202,6 @@ pub struct ScanFile {
     pub instrument: Vec<(String, String)>,
 }
 
-/// Which lines of a height map are taken as line scans.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "lowercase")]
-pub enum MapLines {
-    /// The rows, along x.
-    Rows,
-    /// The columns, along y.
-    Columns,
-}
-
 impl ScanFile {
     /// Number of points without a height.
     pub fn missing(&self) -> usize {
@@ -125,70 +210,42 @@ impl ScanFile {
 
     /// Mean of the heights that are there, in metres.
     pub fn mean(&self) -> f64 {
-        let valid = (self.heights.len() - self.missing()) as f64;
-        self.heights.iter().filter(|height| !height.is_nan()).sum::<f64>() / valid
+        Statistics::of(&self.heights).mean()
     }
 
     /// Standard deviation of the heights that are there about their mean, of the population, in
     /// metres.
     pub fn standard_deviation(&self) -> f64 {
-        let mean = self.mean();
-        let valid = (self.heights.len() - self.missing()) as f64;
-        let squares =
-            self.heights.iter().filter(|height| !height.is_nan()).map(|z| (z - mean).powi(2));
-        (squares.sum::<f64>() / valid).sqrt()
+        Statistics::of(&self.heights).standard_deviation()
     }
 
-    /// The profile, or every `step`-th row or column of a map that holds a height, as line scans;
-    /// those of a map are named `name_row_0000` and so on, by their number in the file.
-    pub fn line_scans(&self, name: &str, lines: MapLines, step: usize) -> Vec<RawScan> {
-        let line = |name: String, spacing: f64, heights: Vec<f64>| RawScan {
-            name,
-            positions: (0..heights.len()).map(|i| i as f64 * spacing).collect(),
-            heights,
+    /// The lines that [`OpenScan::lines`] gives.
+    ///
+    /// # Errors
+    /// [`FileProblem::TooManyLines`].
+    pub fn line_scans(
+        &self,
+        name: &str,
+        lines: MapLines,
+        step: usize,
+    ) -> Result<Vec<RawScan>, FileProblem> {
+        let mut scans = Vec::new();
+        let mut each = |scan| -> Result<(), FileProblem> {
+            scans.push(scan);
+            Ok(())
         };
-        let (columns, rows, spacing_x, spacing_y) = match self.grid {
-            Grid::Profile { spacing } => {
-                return vec![line(name.to_owned(), spacing, self.heights.clone())];
-            }
-            Grid::Map { columns, rows, spacing_x, spacing_y } => {
-                (columns, rows, spacing_x, spacing_y)
-            }
-        };
-        let (word, count, spacing) = match lines {
-            MapLines::Rows => ("row", rows, spacing_x),
-            MapLines::Columns => ("column", columns, spacing_y),
-        };
-        let heights = |number: usize| -> Vec<f64> {
-            match lines {
-                MapLines::Rows => self.heights[number * columns..(number + 1) * columns].to_vec(),
-                MapLines::Columns => {
-                    self.heights.iter().skip(number).step_by(columns).copied().collect()
-                }
-            }
-        };
-        (0..count)
-            .step_by(step.max(1))
-            .map(|number| line(format!("{name}_{word}_{number:04}"), spacing, heights(number)))
-            .filter(|scan| scan.heights.iter().any(|height| !height.is_nan()))
-            .collect()
+        let mut collector = LineCollector::new(name, self.grid, lines, step)?;
+        collector.take(&self.heights, &mut each)?;
+        collector.finish(&mut each)?;
+        Ok(scans)
     }
+}
 
-    /// Checks what all formats have in common.
-    fn checked(self) -> Result<Self, FileProblem> {
-        // Absolute elevations of roads are heights as well; all beyond is a mark or a wrong unit.
-        const LARGEST_HEIGHT_M: f64 = 1e4;
-        let absurd = |height: &f64| height.abs() > LARGEST_HEIGHT_M;
-        if let Some(index) = self.heights.iter().position(absurd) {
-            let found = format!("{:e} m", self.heights[index]);
-            let expected = "a height below 10 km or a mark of missing points of the format";
-            return Err(unexpected(Place::Height(index + 1), "the value", found, expected));
-        }
-        match self.heights.len() {
-            points if points == self.missing() => Err(FileProblem::AllMissing { points }),
-            _ => Ok(self),
-        }
+fn admit_points(size: u64, place: Place) -> Result<(), FileProblem> {
+    if size <= LARGEST_POINTS {
+        return Ok(());
     }
+    Err(FileProblem::TooLarge { place, what: "the number of points", size, limit: LARGEST_POINTS })
 }
 
 /// A spacing in metres, if it is one of a scan: from an atomic force microscope to a survey of
@@ -199,6 +256,34 @@ fn spacing(place: Place, metres: f64) -> Result<f64, FileProblem> {
     }
     let expected = "between 1e-12 m and 10 m; check spacing and unit in the instrument's software";
     Err(unexpected(place, "the spacing of the points in m", format!("{metres:e}"), expected))
+}
+
+/// Opens an instrument file: its header is read, its heights are still to come. `None` if it is
+/// of none of the families.
+///
+/// # Errors
+/// [`FileProblem`] of the header, or a size that the file cannot hold.
+pub fn open(source: Source<'_>) -> Result<Option<OpenScan<'_>>, FileProblem> {
+    open_channel(source, None)
+}
+
+/// Like [`open`], with the number from 1 of the channel that is read of an ERD file.
+///
+/// # Errors
+/// [`FileProblem`]; also for a channel that the file does not have, or that holds no heights.
+pub fn open_channel(
+    source: Source<'_>,
+    channel: Option<usize>,
+) -> Result<Option<OpenScan<'_>>, FileProblem> {
+    let Some(family) = Family::detect(source.start()) else { return Ok(None) };
+    let open = match family {
+        Family::Sdf => sdf::open(source),
+        Family::X3p => x3p::open(source),
+        Family::DigitalSurf => digital_surf::open(source),
+        Family::Erd => erd::open(source, channel),
+        Family::Gwyddion => gwyddion::open(source),
+    };
+    open.map(Some)
 }
 
 /// Reads an instrument file; `None` if it is of none of the families.
@@ -214,9 +299,11 @@ pub fn read_file(path: &Path) -> Result<Option<ScanFile>, FileError> {
 /// # Errors
 /// [`FileError`]; also for a channel that the file does not have, or that holds no heights.
 pub fn read_channel(path: &Path, channel: Option<usize>) -> Result<Option<ScanFile>, FileError> {
-    let bytes = super::read_bytes(path)
-        .map_err(|error| FileError { file: path.display().to_string(), problem: error.into() })?;
-    parse_channel("", &bytes, channel).map_err(|error| error.in_file(path))
+    let file_error = |problem| FileError { file: path.display().to_string(), problem };
+    let source = Source::open(path).map_err(|error| file_error(error.into()))?;
+    open_channel(source, channel)
+        .and_then(|scan| scan.map(OpenScan::whole).transpose())
+        .map_err(file_error)
 }
 
 /// Reads the bytes of an instrument file; `None` if they are of none of the families.
@@ -224,28 +311,8 @@ pub fn read_channel(path: &Path, channel: Option<usize>) -> Result<Option<ScanFi
 /// # Errors
 /// [`FileError`] that tells of the file as `name`.
 pub fn parse_file(name: &str, bytes: &[u8]) -> Result<Option<ScanFile>, FileError> {
-    parse_channel(name, bytes, None)
-}
-
-/// Like [`parse_file`], with the number from 1 of the channel that is read of an ERD file.
-///
-/// # Errors
-/// [`FileError`]; also for a channel that the file does not have, or that holds no heights.
-pub fn parse_channel(
-    name: &str,
-    bytes: &[u8],
-    channel: Option<usize>,
-) -> Result<Option<ScanFile>, FileError> {
-    let Some(family) = Family::detect(bytes) else { return Ok(None) };
-    let read = match family {
-        Family::Sdf => sdf::read(bytes),
-        Family::X3p => x3p::read(bytes),
-        Family::DigitalSurf => digital_surf::read(bytes),
-        Family::Erd => erd::read(bytes, channel),
-        Family::Gwyddion => gwyddion::read(bytes),
-    };
-    read.and_then(ScanFile::checked)
-        .map(Some)
+    open(Source::of_bytes(bytes))
+        .and_then(|scan| scan.map(OpenScan::whole).transpose())
         .map_err(|problem| FileError { file: name.to_owned(), problem })
 }
 

@@ -171,7 +171,9 @@ fn a_text_sdf_is_read_and_its_faults_are_named() {
     let changed = |from, to| error(text.replace(from, to).as_bytes());
     contains_all(&changed("-3 4", "-3 x"), &["file: line 11", "`x`", "a number or BAD"]);
     contains_all(&changed("-3 4", "-3"), &["the number of heights is `3`", "expected 4 (Num"]);
-    contains_all(&changed("NumPoints = 2", "NumPoints = 2147483648"), &["line 3", "limit"]);
+    let many = changed("NumPoints = 2", "NumPoints = 2147483648");
+    contains_all(&many, &["the heights needs 8589934591 bytes"]);
+    contains_all(&changed("NumPoints = 2", "NumPoints = 2147483648000"), &["line 3", "limit"]);
     contains_all(&changed("DataType = 5", "DataType = 9"), &["line 8", "0 to 7"]);
     contains_all(&changed("Xscale", "Xskale"), &["Xscale"]);
     contains_all(&changed("*\r\n1", "1"), &["`key = value` or `*`"]);
@@ -180,11 +182,11 @@ fn a_text_sdf_is_read_and_its_faults_are_named() {
 #[test]
 fn declared_sizes_are_checked_before_memory_is_asked_for() {
     let heights = [0; 100];
-    contains_all(&error(&sdf("bISO-2.0", u32::MAX, 1, 7, &heights)), &["byte 42", "limit"]);
+    contains_all(&error(&sdf("bISO-2.0", u32::MAX, u32::MAX, 7, &heights)), &["byte 42", "limit"]);
     contains_all(&error(&sdf("bISO-2.0", 1 << 20, 1, 7, &heights)), &["the heights needs", "185"]);
     contains_all(
         &error(&digital_surf(1, 16, i32::MAX, 1, &heights, false)),
-        &["byte 108", "limit"],
+        &["the heights needs 4294967294 bytes from byte 516", "the file has 616"],
     );
     contains_all(&error(&digital_surf(1, 16, -4, 1, &heights, false)), &["byte 108", "`-4`"]);
     let document = x3p_document("D", (1 << 31, 1), LINK);
@@ -195,7 +197,10 @@ fn declared_sizes_are_checked_before_memory_is_asked_for() {
     let document = x3p_document("D", (1 << 20, 1), LINK);
     let members = [("main.xml", document.as_bytes()), ("bindata/data.bin", &heights)];
     contains_all(&error(&archive(&members)), &["bindata/data.bin", "`100`", "8388608"]);
-    contains_all(&error(b"ERDFILEV2.00\n1,4e9,-1,1,5,0.1,-1\nEND\n"), &["line 2", "limit"]);
+    contains_all(
+        &error(b"ERDFILEV2.00\n1,4e9,-1,1,5,0.1,-1\nUNITSNAMmm\nXUNITS  m\nEND\n"),
+        &["needs 7999999999", "58"],
+    );
 }
 
 #[test]
@@ -387,7 +392,7 @@ fn a_zip_bomb_is_refused_by_its_ratio() {
     let document = x3p_document("D", (1 << 20, 1), LINK);
     let bomb = archive(&[("main.xml", document.as_bytes()), ("bindata/data.bin", &zeros)]);
     assert!(bomb.len() < 20_000);
-    contains_all(&error(&bomb), &["bindata/data.bin", "unpacked size", "limit"]);
+    contains_all(&error(&bomb), &["bindata/data.bin", "bytes unpack to 8388608", "200 times"]);
 }
 
 #[test]
@@ -415,6 +420,42 @@ fn an_erd_profile_is_read_in_its_units() {
 }
 
 #[test]
+fn a_file_that_ends_within_its_last_number_is_refused() {
+    let numbers: String = (0..20).map(|i| format!("\n{}.25", 10 + i)).collect();
+    let sdf = "aISO-1.0\nNumPoints = 20\nNumProfiles = 1\nXscale = 1e-6\nYscale = 0\n\
+               Zscale = 1e-6\nDataType = 7\n*";
+    let erd = "ERDFILEV2.00\n1,-1,-1,1,5,0.25,-1\nUNITSNAMmm\nXUNITS  m\nEND";
+    let gwyddion = "# a: b\n# c: 1 m\n# d: 1 m\n# e: mm";
+    for (header, line) in [(sdf, 28), (erd, 25), (gwyddion, 24)] {
+        let text = format!("{header}{numbers}");
+        assert_eq!(parse(text.as_bytes()).unwrap().heights.len(), 20);
+        let cut = &text[..text.len() - 1];
+        let place = format!("file: line {line}: the file ends here without a line end");
+        contains_all(&error(cut.as_bytes()), &[&place, "`29.2`", "copy it again"]);
+        assert_eq!(parse(format!("{cut}\n").as_bytes()).unwrap().heights.len(), 20);
+    }
+}
+
+#[test]
+fn streams_that_are_longer_shorter_or_damaged_are_no_heights() {
+    let raw: Vec<u8> = (0..3000_i32).flat_map(|v| (v * 7919 % 30_011).to_le_bytes()).collect();
+    let file = |plain: &[u8], stated: u32| {
+        let packed = zlib(plain);
+        let mut streams = 1_u32.to_le_bytes().to_vec();
+        streams.extend([stated.to_le_bytes(), (packed.len() as u32).to_le_bytes()].concat());
+        streams.extend(packed);
+        digital_surf(2, 32, 60, 50, &streams, true)
+    };
+    assert_eq!(parse(&file(&raw, 12_000)).unwrap().heights.len(), 3000);
+    contains_all(&error(&file(&[&raw[..], &[0]].concat(), 12_000)), &["goes on behind its length"]);
+    contains_all(&error(&file(&raw[1..], 12_000)), &["ends 1 bytes before its length"]);
+    // The checksum of zlib is behind the data.
+    let mut damaged = file(&raw, 12_000);
+    *damaged.last_mut().unwrap() ^= 1;
+    contains_all(&error(&damaged), &["file: byte 516", "copy the file again"]);
+}
+
+#[test]
 fn rows_and_columns_of_a_map_are_line_scans() {
     let heights = vec![1.0, 2.0, 3.0, f64::NAN, f64::NAN, f64::NAN, 7.0, 8.0, 9.0];
     let map = ScanFile {
@@ -424,7 +465,7 @@ fn rows_and_columns_of_a_map_are_line_scans() {
         heights,
         instrument: Vec::new(),
     };
-    let rows = map.line_scans("a", MapLines::Rows, 1);
+    let rows = map.line_scans("a", MapLines::Rows, 1).unwrap();
     // The second row has no height at all.
     let names: Vec<_> = rows.iter().map(|scan| scan.name.as_str()).collect();
     assert_eq!(names, ["a_row_0000", "a_row_0002"]);
@@ -432,7 +473,7 @@ fn rows_and_columns_of_a_map_are_line_scans() {
         (&rows[1].heights, &rows[1].positions),
         (&vec![7.0, 8.0, 9.0], &vec![0.0, 0.1, 0.2])
     );
-    let columns = map.line_scans("a", MapLines::Columns, 2);
+    let columns = map.line_scans("a", MapLines::Columns, 2).unwrap();
     assert_eq!(columns.len(), 2);
     assert!(same(&columns[1].heights, &[3.0, f64::NAN, 9.0]));
     assert_eq!(columns[1].positions, [0.0, 0.2, 0.4]);

@@ -6,12 +6,14 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
-use crate::scans::decode::{Located, body_start, decode};
-use crate::scans::{ScanError, ScanProblem, TextFormat};
+use crate::scans::decode::{Located, TextLines};
+use crate::scans::file::LARGEST_POINTS;
+use crate::scans::last_number::{self, LastNumber};
+use crate::scans::{ScanError, ScanProblem, Source, TextFormat};
 use crate::surface::RawScan;
 use columns::{Columns, written_cells};
 use csv::StringRecord;
-use number::Cells;
+use number::{Cells, shorten};
 use rows::Rows;
 use statrs::statistics::{Data, OrderStatistics};
 use std::path::Path;
@@ -26,25 +28,38 @@ pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError>
     if path.is_dir() {
         return Err(whole(ScanProblem::Directory));
     }
-    let bytes = super::read_bytes(path).map_err(|error| whole(error.into()))?;
+    let source = Source::open(path).map_err(|error| whole(error.into()))?;
     let name = crate::files::name::text(path.file_stem().unwrap_or(path.as_os_str()));
-    parse_text(&name, &bytes, format).map_err(|error| error.in_file(path))
+    read_source(&name, source, format).map_err(|error| error.in_file(path))
 }
 
-/// Reads the line scan in the bytes of a text file. Positions and heights are converted to
-/// metres, missing heights are NaN; positions grow from line to line or stay.
+/// Reads the line scan in the bytes of a text file.
+///
+/// # Errors
+/// As [`read_source`].
+pub fn parse_text(name: &str, bytes: &[u8], format: &TextFormat) -> Result<RawScan, ScanError> {
+    read_source(name, Source::of_bytes(bytes), format)
+}
+
+/// Reads the line scan in a text file line by line, of which one is in memory. Positions and
+/// heights are converted to metres, missing heights are NaN; positions grow from line to line or
+/// stay.
 ///
 /// # Errors
 /// [`ScanError`] that tells of the file as `name`.
-pub fn parse_text(name: &str, bytes: &[u8], format: &TextFormat) -> Result<RawScan, ScanError> {
+pub fn read_source(
+    name: &str,
+    source: Source<'_>,
+    format: &TextFormat,
+) -> Result<RawScan, ScanError> {
     let error = |line, column, problem| ScanError { file: name.to_owned(), line, column, problem };
     let whole = |problem| error(None, None, problem);
     let located = |(line, problem): Located| error(line, None, problem);
 
     format.validate().map_err(whole)?;
-    let text = decode(bytes, &format.encoding).map_err(located)?;
-    let body = body_start(&text, format).map_err(whole)?;
-    let points = read_points(&text, body, format)
+    let mut lines = TextLines::open(source, &format.encoding).map_err(located)?;
+    lines.skip_preamble(format).map_err(located)?;
+    let points = read_points(Rows::new(lines, format), format)
         .map_err(|failure| error(failure.line, failure.column, failure.problem))?;
     let scan = to_metres(name, points, format);
     check_plausible(&scan, format).map_err(whole)?;
@@ -68,25 +83,31 @@ struct Failure {
     problem: ScanProblem,
 }
 
-fn read_points(text: &str, body: usize, format: &TextFormat) -> Result<Points, Failure> {
+impl From<Located> for Failure {
+    fn from((line, problem): Located) -> Self {
+        Self { line, column: None, problem }
+    }
+}
+
+fn read_points(mut rows: Rows<'_>, format: &TextFormat) -> Result<Points, Failure> {
     let cells = Cells::new(format);
-    let mut rows = Rows::new(text, body, format);
     let mut record = StringRecord::new();
     let on_line = |rows: &Rows, problem| Failure { line: Some(rows.line()), column: None, problem };
+    let too_few = |rows: &Rows, points| {
+        let problem = rows.ends_with(ScanProblem::TooFewPoints { rows: points });
+        Failure { line: None, column: None, problem }
+    };
 
-    if format.header && !rows.read(&mut record).map_err(|problem| on_line(&rows, problem))? {
-        return Err(Failure {
-            line: None,
-            column: None,
-            problem: ScanProblem::TooFewPoints { rows: 0 },
-        });
+    if format.header && !rows.read_names(&mut record, &cells)? {
+        return Err(too_few(&rows, 0));
     }
     let header = format.header.then_some(&record);
     let columns =
         Columns::resolve(format, header, &cells).map_err(|problem| on_line(&rows, problem))?;
 
     let mut points = Points::default();
-    while rows.read(&mut record).map_err(|problem| on_line(&rows, problem))? {
+    let mut ends = Ends::default();
+    while rows.read(&mut record)? {
         // Spreadsheets end a file with lines of separators only.
         if columns.x.is_some() && written_cells(&record) == 0 {
             continue;
@@ -99,6 +120,11 @@ fn read_points(text: &str, body: usize, format: &TextFormat) -> Result<Points, F
         if columns.x.is_none() && !points.heights.is_empty() && rows.follows_blank_line() {
             return Err(on_line(&rows, ScanProblem::BlankLine));
         }
+        let unfinished = rows.is_unfinished_line();
+        ends.check(&record, &columns, unfinished).map_err(|problem| on_line(&rows, problem))?;
+        if points.heights.len() as u64 == LARGEST_POINTS {
+            return Err(on_line(&rows, ScanProblem::TooManyPoints { limit: LARGEST_POINTS }));
+        }
         push(&mut points, &record, &columns, &cells).map_err(|(place, problem)| Failure {
             line: Some(rows.line()),
             column: Some(columns.describe(place)),
@@ -106,10 +132,46 @@ fn read_points(text: &str, body: usize, format: &TextFormat) -> Result<Points, F
         })?;
     }
     match points.heights.len() {
-        rows @ (0 | 1) => {
-            Err(Failure { line: None, column: None, problem: ScanProblem::TooFewPoints { rows } })
-        }
+        points @ (0 | 1) => Err(too_few(&rows, points)),
         _ => Ok(points),
+    }
+}
+
+/// How the lines of points end, to tell a file that was cut in its last one.
+#[derive(Default)]
+struct Ends {
+    numbers: LastNumber,
+    lines: usize,
+    /// Cells of the line before.
+    cells: usize,
+}
+
+impl Ends {
+    /// Compares a line without a line end with those before it.
+    fn check(
+        &mut self,
+        record: &StringRecord,
+        columns: &Columns,
+        unfinished: bool,
+    ) -> Result<(), ScanProblem> {
+        let Some(last) = record.len().checked_sub(1) else { return Ok(()) };
+        if !unfinished {
+            self.lines += 1;
+            self.cells = record.len();
+            self.numbers.note(&record[last]);
+            return Ok(());
+        }
+        // A cut in another column leaves position and height whole.
+        if last != columns.z && columns.x != Some(last) {
+            return Ok(());
+        }
+        if self.lines >= last_number::ENOUGH && record.len() < self.cells {
+            return Err(ScanProblem::Truncated);
+        }
+        match self.numbers.is_cut(&record[last]) {
+            true => Err(ScanProblem::CutNumber { text: shorten(record[last].trim()) }),
+            false => Ok(()),
+        }
     }
 }
 

@@ -121,6 +121,87 @@ fn the_preamble_is_skipped_by_count_and_by_marker() {
     assert_fails(text, &simple("skip_lines = 6"), "scan: too few points: 0");
 }
 
+/// Positions in mm with one decimal, heights in um with two, and a note in the third column.
+fn track(points: usize) -> String {
+    let line = |i: usize| format!("{}.{};{:.2};\"fine\"\n", i / 10, i % 10, (i % 7) as f64 + 0.11);
+    "x;z;note\n".to_owned() + &(0..points).map(line).collect::<String>()
+}
+
+#[test]
+fn points_are_not_swallowed_by_a_quotation_mark() {
+    let format = TextFormat { separator: Separator::Semicolon, ..simple("") };
+    let whole = track(4000);
+    assert_eq!(parse_text("a", whole.as_bytes(), &format).unwrap().heights.len(), 4000);
+    // Two stray marks 300 lines apart: all between them was one cell, and 3700 points were read.
+    let lines: Vec<&str> = whole.lines().collect();
+    let mut swallowed: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
+    swallowed[1000] = swallowed[1000].replace("\"fine\"", "\"fine");
+    swallowed[1300] = swallowed[1300].replace("\"fine\"", "fine\"");
+    let text = swallowed.join("\n") + "\n";
+    assert_fails(
+        &text,
+        &format,
+        "scan, line 1001: a cell opens a quotation mark that its line does",
+    );
+    // A mark within a cell is a letter: inches.
+    let inches = whole.replace("\"fine\"", "5\"");
+    assert_eq!(parse_text("a", inches.as_bytes(), &format).unwrap().heights.len(), 4000);
+    // Names over several lines are those of a spreadsheet; lines of numbers are no names.
+    let names = whole.replacen("x;z;note", "\"x\nmm\";z;\"a\nnote\"", 1);
+    assert_eq!(parse_text("a", names.as_bytes(), &format).unwrap().heights.len(), 4000);
+    assert_fails(
+        whole.replacen("x;z;note", "x;z;\"note", 1),
+        &format,
+        "scan, line 1: a cell opens",
+    );
+    assert_fails("\"x;z\n0;1\n1;2\n\"\n2;3\n", &format, "scan, line 1: a cell opens");
+}
+
+#[test]
+fn a_last_number_that_was_cut_is_no_number() {
+    let format = TextFormat { separator: Separator::Semicolon, ..simple("") };
+    let whole = track(400).replace(";\"fine\"", "");
+    let whole = whole.trim_end();
+    // Without its last line end the file is complete.
+    assert_eq!(parse_text("a", whole.as_bytes(), &format).unwrap().heights.len(), 400);
+    for cut in 1..3 {
+        let text = &whole[..whole.len() - cut];
+        assert_fails(text, &format, "scan, line 401: the file ends here without a line end");
+        // Whoever knows better ends the line.
+        let ended = format!("{text}\n");
+        assert_eq!(parse_text("a", ended.as_bytes(), &format).unwrap().heights.len(), 400);
+    }
+    // Cut before the mark there are fewer cells; a cut note leaves the point whole.
+    let with_note = track(400);
+    let z = with_note.trim_end().rfind(';').unwrap();
+    assert_fails(&with_note[..z], &format, "scan, line 401: the file breaks off in the middle");
+    let noted = with_note.replace("\"fine\"", "fine");
+    let noted = &noted.trim_end()[..noted.trim_end().len() - 2];
+    assert_eq!(parse_text("a", noted.as_bytes(), &format).unwrap().heights.len(), 400);
+}
+
+#[test]
+fn what_is_no_text_is_told_by_its_line() {
+    let plain = simple("");
+    let long = format!("x,z\n0,1\n1,{}", "1".repeat(5 << 20));
+    assert_fails(long, &plain, "scan, line 3: a line of more than 4194304 bytes");
+    let many = format!("x,z\n0,1\n1,{}\n", ",".repeat(70_000));
+    assert_fails(many, &plain, "scan, line 3: more than 65536 cells; check `separator`");
+    assert_fails(b"x,z\n0,1\n1,\xff\n2,3\n", &plain, "scan, line 3: bytes that are no UTF-8");
+    let shift_jis = simple("encoding = 'shift_jis'");
+    assert_fails(
+        b"x,z\n0,1\n1,\x81\n2,3\n",
+        &shift_jis,
+        "scan, line 3: bytes that are no Shift_JIS",
+    );
+    // A mark of the encoding beyond what is looked at first, and a letter on the seam of two reads.
+    let long = format!("x,\u{e9}\n{}", "1,2\n".repeat(100_000).replacen("1,2", "0,2", 1));
+    assert_eq!(parse_text("a", long.as_bytes(), &plain).unwrap().heights.len(), 100_000);
+    let wide: Vec<u8> = long.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let wide_format = simple("encoding = 'utf-16le'");
+    assert_eq!(parse_text("a", &wide, &wide_format).unwrap().heights.len(), 100_000);
+}
+
 #[test]
 fn plates_at_the_ends_are_cut() {
     let text: String = (0..=10).map(|i| format!("{i},{i}\n")).collect();

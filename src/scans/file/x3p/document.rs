@@ -1,73 +1,124 @@
-//! The XML document of an X3P file as the texts of its elements.
+//! The XML document of an X3P file: the texts of the elements that are read, and the heights that
+//! stand in it.
 
 use super::super::LARGEST_POINTS;
 use super::super::error::{FileProblem, Place, unexpected};
 use quick_xml::Reader;
 use quick_xml::events::{BytesRef, Event};
 use std::collections::BTreeMap;
+use std::io::{self, BufRead, BufReader, Read};
 
 /// Deeper than any document of the standard.
 const DEEPEST: usize = 32;
 /// More elements, data apart, than any document of the standard.
 const MOST_ELEMENTS: usize = 100_000;
+/// Longest tag, comment or text in bytes; a text may be longer where it is not read.
+const LONGEST: usize = 1 << 18;
+/// Heights that a document may give before it says how many there are.
+const MOST_UNDECLARED: u64 = 1 << 16;
+/// The shortest datum, `<Datum/>`.
+const SHORTEST_DATUM: u64 = 8;
 const DATUM: &str = "Record3/DataList/Datum";
+const LIST: &str = "Record3/ListDimension";
 
-/// Text of each element by its path below the root, and the data in their order.
+/// Elements whose text is read, by their path below the root. Of all others nothing is kept, so
+/// that a document takes no memory but that of these and its heights.
+const READ: [&str; 28] = [
+    "Record1/FeatureType",
+    "Record1/Axes/CX/AxisType",
+    "Record1/Axes/CX/Increment",
+    "Record1/Axes/CY/AxisType",
+    "Record1/Axes/CY/Increment",
+    "Record1/Axes/CZ/AxisType",
+    "Record1/Axes/CZ/DataType",
+    "Record1/Axes/CZ/Increment",
+    "Record1/Axes/CZ/Offset",
+    "Record2/Instrument/Manufacturer",
+    "Record2/Instrument/Model",
+    "Record2/Instrument/Serial",
+    "Record2/Instrument/Version",
+    "Record2/ProbingSystem/Type",
+    "Record2/ProbingSystem/Identification",
+    "Record2/Date",
+    "Record2/Creator",
+    "Record2/Comment",
+    LIST,
+    "Record3/MatrixDimension/SizeX",
+    "Record3/MatrixDimension/SizeY",
+    "Record3/MatrixDimension/SizeZ",
+    "Record3/DataLink/PointDataLink",
+    "Record3/DataLink/MD5ChecksumPointData",
+    "Record3/DataLink/ValidPointsLink",
+    "Record3/DataLink/MD5ChecksumValidPoints",
+    DATUM,
+    "Record4/ChecksumFile",
+];
+
+/// Text of each element that is read by its path below the root, and the data in their order.
 #[derive(Default)]
 pub(super) struct Document {
-    texts: BTreeMap<String, String>,
-    pub(super) data: Vec<String>,
+    texts: BTreeMap<&'static str, String>,
+    /// Heights in units of the document; NaN where a datum is empty.
+    pub(super) data: Vec<f64>,
 }
 
 impl Document {
-    /// Reads a document. Entities other than the five of XML and document types are refused:
-    /// the format needs none, and they can grow without bound or name other files.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Self, FileProblem> {
-        let mut reader = Reader::from_reader(bytes);
-        let mut state = State::default();
+    /// Reads a document of at most `size` bytes. Entities other than the five of XML and document
+    /// types are refused: the format needs none, and they can grow without bound or name other
+    /// files.
+    pub(super) fn parse(document: impl Read, size: u64) -> Result<Self, FileProblem> {
+        let mut reader = Reader::from_reader(Bounded::new(document));
+        let mut state = State { size, ..State::default() };
+        let mut buffer = Vec::new();
         loop {
-            let at = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
+            buffer.clear();
+            reader.get_mut().left = LONGEST;
+            let at = reader.buffer_position();
             let damaged = |reason: String| FileProblem::Damaged {
                 place: Place::Member(super::MAIN.into()),
                 reason: format!("byte {at}: {reason}"),
             };
-            match reader.read_event().map_err(|error| damaged(error.to_string()))? {
-                Event::Eof if state.path.is_empty() => return Ok(state.document),
-                Event::Eof => return Err(damaged(format!("ends within {}", state.name()))),
-                Event::Start(element) => {
-                    state.open(element.local_name().as_ref())?;
+            match reader.read_event_into(&mut buffer) {
+                Err(error) => return Err(damaged(error.to_string())),
+                Ok(Event::Eof) if state.depth() > 0 => {
+                    return Err(damaged(format!("ends within {}", shown(state.name()))));
                 }
-                Event::Empty(element) => {
+                Ok(Event::Eof) if state.elements == 0 => {
+                    let place = Place::Member(super::MAIN.into());
+                    let expected = "XML; export the scan again";
+                    return Err(unexpected(place, "the document", "empty", expected));
+                }
+                Ok(Event::Eof) => return Ok(state.document),
+                Ok(Event::Start(element)) => state.open(element.local_name().as_ref())?,
+                Ok(Event::Empty(element)) => {
                     state.open(element.local_name().as_ref())?;
                     state.close()?;
                 }
-                Event::End(_) => state.close()?,
-                Event::Text(text) => {
-                    state
-                        .text
-                        .push_str(&text.decode().map_err(|error| damaged(error.to_string()))?);
+                Ok(Event::End(_)) => state.close()?,
+                Ok(Event::Text(text)) => {
+                    state.push(&text.decode().map_err(|error| damaged(error.to_string()))?)?;
                 }
-                Event::CData(text) => {
-                    state
-                        .text
-                        .push_str(&text.decode().map_err(|error| damaged(error.to_string()))?);
+                Ok(Event::CData(text)) => {
+                    state.push(&text.decode().map_err(|error| damaged(error.to_string()))?)?;
                 }
-                Event::GeneralRef(entity) => state.text.push(character(&entity)?),
-                Event::DocType(_) => {
+                Ok(Event::GeneralRef(entity)) => {
+                    state.push(character(&entity)?.encode_utf8(&mut [0; 4]))?;
+                }
+                Ok(Event::DocType(_)) => {
                     return Err(FileProblem::Unsupported {
                         place: Place::Member(super::MAIN.into()),
                         what: format!("a document type (byte {at})"),
                         advice: "an X3P file has none; ask where it comes from",
                     });
                 }
-                Event::Decl(_) | Event::PI(_) | Event::Comment(_) => {}
+                Ok(Event::Decl(_) | Event::PI(_) | Event::Comment(_)) => {}
             }
         }
     }
 
-    pub(super) fn contains(&self, path: &str) -> bool {
-        let inside = format!("{path}/");
-        self.texts.keys().any(|key| key == path || key.starts_with(&inside))
+    /// Whether the document gives points without a grid.
+    pub(super) fn has_list_of_points(&self) -> bool {
+        self.texts.contains_key(LIST)
     }
 
     /// The text of an element, without the blanks around it.
@@ -94,60 +145,132 @@ impl Document {
             },
         }
     }
+
+    /// Number of points by the size of the matrix, where it has been read and is one.
+    fn points(&self) -> Option<u64> {
+        let size = |path| self.text(path)?.parse::<u64>().ok();
+        let (x, y) = (size("Record3/MatrixDimension/SizeX"), size("Record3/MatrixDimension/SizeY"));
+        x?.checked_mul(y?)
+    }
 }
 
 #[derive(Default)]
 struct State {
     document: Document,
-    /// Names from the root to the open element.
-    path: Vec<String>,
+    /// Path of the open element below the root.
+    path: String,
+    /// Lengths of the path above each open element.
+    above: Vec<usize>,
+    /// Text of the open element, if it is one of those that are read.
     text: String,
+    elements: usize,
+    /// Bytes of the document.
+    size: u64,
 }
 
 impl State {
-    /// Path of the open element below the root.
-    fn name(&self) -> String {
-        self.path.get(1..).unwrap_or_default().join("/")
+    fn depth(&self) -> usize {
+        self.above.len()
+    }
+
+    fn name(&self) -> &str {
+        &self.path
     }
 
     fn open(&mut self, name: &[u8]) -> Result<(), FileProblem> {
-        if self.path.len() == DEEPEST {
-            return Err(FileProblem::TooLarge {
-                place: Place::Element(self.name()),
-                what: "the depth of elements",
-                size: DEEPEST as u64 + 1,
-                limit: DEEPEST as u64,
-            });
+        if self.depth() == DEEPEST {
+            return Err(self.too_large("the depth of elements", DEEPEST as u64));
         }
-        self.path.push(String::from_utf8_lossy(name).into_owned());
+        let is_root = self.depth() == 0;
+        self.above.push(self.path.len());
+        if !is_root {
+            if !self.path.is_empty() {
+                self.path.push('/');
+            }
+            self.path.push_str(&String::from_utf8_lossy(name));
+        }
+        if self.path.len() > LONGEST {
+            return Err(self.too_large("the length of the names of elements", LONGEST as u64));
+        }
         self.text.clear();
         Ok(())
     }
 
-    fn close(&mut self) -> Result<(), FileProblem> {
-        let name = self.name();
-        let text = std::mem::take(&mut self.text);
-        self.path.pop();
-        let (found, limit) = if name == DATUM {
-            self.document.data.push(text);
-            (self.document.data.len(), LARGEST_POINTS as usize)
-        } else {
-            // The first of several layers or channels counts.
-            self.document.texts.entry(name.clone()).or_insert(text);
-            (self.document.texts.len(), MOST_ELEMENTS)
-        };
-        if found > limit {
-            let (size, limit) = (found as u64, limit as u64);
-            let place = Place::Element(name);
-            return Err(FileProblem::TooLarge {
-                place,
-                what: "the number of elements",
-                size,
-                limit,
-            });
+    fn push(&mut self, text: &str) -> Result<(), FileProblem> {
+        if self.read().is_none() {
+            return Ok(());
         }
+        if self.text.len() + text.len() > LONGEST {
+            return Err(self.too_large("the length of the text", LONGEST as u64));
+        }
+        self.text.push_str(text);
         Ok(())
     }
+
+    /// The open element, if it is one of those that are read.
+    fn read(&self) -> Option<&'static str> {
+        READ.into_iter().find(|path| *path == self.path)
+    }
+
+    fn close(&mut self) -> Result<(), FileProblem> {
+        match self.read() {
+            Some(DATUM) => self.datum()?,
+            read => {
+                self.elements += 1;
+                if self.elements > MOST_ELEMENTS {
+                    return Err(self.too_large("the number of elements", MOST_ELEMENTS as u64));
+                }
+                // The first of several layers or channels counts.
+                if let Some(path) = read {
+                    let text = std::mem::take(&mut self.text);
+                    self.document.texts.entry(path).or_insert(text);
+                }
+            }
+        }
+        self.text.clear();
+        self.path.truncate(self.above.pop().unwrap_or(0));
+        Ok(())
+    }
+
+    fn datum(&mut self) -> Result<(), FileProblem> {
+        let number = self.document.data.len() as u64 + 1;
+        let place = || Place::Element(format!("{DATUM}[{number}]"));
+        let value = match self.text.trim() {
+            "" => f64::NAN,
+            text => text.parse().map_err(|_| unexpected(place(), "a height", text, "a number"))?,
+        };
+        if number == 1 {
+            // What the document says is believed as far as it can hold that many.
+            let most = (self.size / SHORTEST_DATUM).min(LARGEST_POINTS);
+            let points = self.document.points().unwrap_or(0).min(most);
+            self.document.data.reserve_exact(points as usize);
+        }
+        if number > self.document.points().unwrap_or(MOST_UNDECLARED).min(LARGEST_POINTS) {
+            let place = Place::Element("Record3/DataList".into());
+            return Err(match self.document.points() {
+                Some(points) => {
+                    unexpected(place, "the number of data", format!("{number} or more"), points)
+                }
+                None => {
+                    let expected = "stated in MatrixDimension before the data";
+                    unexpected(place, "the number of data", number, expected)
+                }
+            });
+        }
+        self.document.data.push(value);
+        Ok(())
+    }
+
+    fn too_large(&self, what: &'static str, limit: u64) -> FileProblem {
+        let place = Place::Element(shown(&self.path));
+        FileProblem::TooLarge { place, what, size: limit + 1, limit }
+    }
+}
+
+/// A path for a message.
+fn shown(path: &str) -> String {
+    const LONGEST_SHOWN: usize = 80;
+    path.chars().take(LONGEST_SHOWN).flat_map(char::escape_debug).collect()
 }
 
 /// The character of a numeric reference or of one of the five entities of XML.
@@ -155,17 +278,52 @@ fn character(entity: &BytesRef<'_>) -> Result<char, FileProblem> {
     if let Ok(Some(character)) = entity.resolve_char_ref() {
         return Ok(character);
     }
-    let name = String::from_utf8_lossy(entity).into_owned();
-    match name.as_str() {
-        "amp" => Ok('&'),
-        "lt" => Ok('<'),
-        "gt" => Ok('>'),
-        "quot" => Ok('"'),
-        "apos" => Ok('\''),
+    let name: &[u8] = entity;
+    match name {
+        b"amp" => Ok('&'),
+        b"lt" => Ok('<'),
+        b"gt" => Ok('>'),
+        b"quot" => Ok('"'),
+        b"apos" => Ok('\''),
         _ => Err(FileProblem::Unsupported {
             place: Place::Member(super::MAIN.into()),
-            what: format!("the entity `{}`", name.chars().take(20).collect::<String>()),
+            what: format!("the entity `{}`", shown(&String::from_utf8_lossy(name))),
             advice: "an X3P file has none of its own; ask where it comes from",
         }),
+    }
+}
+
+/// A reader that gives no more than [`LONGEST`] bytes to one event: the parser holds each whole.
+struct Bounded<R> {
+    reader: BufReader<R>,
+    left: usize,
+}
+
+impl<R: Read> Bounded<R> {
+    fn new(reader: R) -> Self {
+        Self { reader: BufReader::new(reader), left: LONGEST }
+    }
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.reader.read(buffer)
+    }
+}
+
+impl<R: Read> BufRead for Bounded<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        let left = self.left;
+        let available = self.reader.fill_buf()?;
+        if left == 0 && !available.is_empty() {
+            let reason = format!("a tag, text or comment of more than {LONGEST} bytes");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        }
+        Ok(&available[..available.len().min(left)])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.left = self.left.saturating_sub(amount);
+        self.reader.consume(amount);
     }
 }

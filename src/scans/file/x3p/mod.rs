@@ -10,9 +10,12 @@ pub use write::write;
 
 use super::bytes::{Number, count};
 use super::error::{FileProblem, Place, unexpected};
-use super::{Grid, ScanFile, grid, spacing};
+use super::heights::Checked;
+use super::{Grid, OpenScan, admit_points, grid, spacing};
+use crate::scans::Source;
 use archive::Archive;
 use document::Document;
+use std::io::Read;
 
 const MAIN: &str = "main.xml";
 /// What is read of the record of the measurement: name and element.
@@ -28,56 +31,63 @@ const FIELDS: [(&str, &str); 9] = [
     ("comment", "Record2/Comment"),
 ];
 
-/// Reads an X3P file: profiles (`PRF`) and surfaces (`SUR`) on equal spacing.
-pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
-    let mut archive = Archive::open(bytes)?;
-    let main = archive.member(MAIN)?;
-    if main.trim_ascii().is_empty() {
-        let place = Place::Member(MAIN.into());
-        return Err(unexpected(place, "the document", "empty", "XML; export the scan again"));
-    }
-    let document = Document::parse(&main)?;
-    let checked = archive.check_document(&main, document.text("Record4/ChecksumFile"))?;
+/// Reads an X3P file: profiles (`PRF`) and surfaces (`SUR`) on equal spacing. The archive is
+/// packed with its directory at the end, so that all of it is in memory.
+pub(super) fn open(source: Source<'_>) -> Result<OpenScan<'_>, FileProblem> {
+    let bytes = source.whole()?;
+    let mut archive = Archive::open(&bytes)?;
+    let mut main = archive.member(MAIN)?;
+    let size = main.size;
+    let document = Document::parse(&mut main, size)?;
+    let checksum = main.finish()?;
+    let checked = archive.check_document(checksum, document.text("Record4/ChecksumFile"))?;
     let feature = document.required("Record1/FeatureType")?;
     if !["PRF", "SUR"].contains(&feature) {
         return Err(FileProblem::Unsupported {
             place: Place::Element("Record1/FeatureType".into()),
-            what: format!("a file of type `{feature}`"),
+            what: format!(
+                "a file of type `{}`",
+                feature.escape_debug().take(40).collect::<String>()
+            ),
             advice: "profiles (PRF) and surfaces (SUR) are read, point clouds are not",
         });
     }
-    let (columns, rows) = size(&document)?;
+    let (columns, rows) = self::size(&document)?;
     if feature == "PRF" && rows != 1 {
         let place = Place::Element("Record3/MatrixDimension/SizeY".into());
         return Err(unexpected(place, "the number of rows of a profile", rows, 1));
     }
     let number = height_type(&document)?;
-    let raw = match document.text("Record3/DataLink/PointDataLink") {
-        Some(member) => binary(&mut archive, &document, member, number, columns * rows)?,
-        None => listed(&document, columns * rows)?,
-    };
+    let (x, y) = spacings(&document, rows)?;
     let scale = document.number("Record1/Axes/CZ/Increment")?.unwrap_or(1.0);
     let offset = document.number("Record1/Axes/CZ/Offset")?.unwrap_or(0.0);
-    let heights = raw.into_iter().map(|raw| raw * scale + offset).collect();
-    let (x, y) = spacings(&document, rows)?;
+    let points = columns * rows;
     let source = if document.data.is_empty() { "binary data" } else { "XML data" };
-    Ok(ScanFile {
-        format: format!("X3P {feature}"),
-        detected: format!(
-            "a zip archive with {MAIN}, feature type {feature}: {source}, heights as {number:?}, {}",
-            if checked { "checksum verified" } else { "without a checksum" }
-        ),
-        grid: match feature {
-            "PRF" => Grid::Profile { spacing: x },
-            _ => grid(columns, rows, x, y),
-        },
-        heights,
-        instrument: instrument(&document),
-    })
+    let detected = format!(
+        "a zip archive with {MAIN}, feature type {feature}: {source}, heights as {number:?}, {}",
+        if checked { "checksum verified" } else { "without a checksum" }
+    );
+    let format = format!("X3P {feature}");
+    let grid = match feature {
+        "PRF" => Grid::Profile { spacing: x },
+        _ => grid(columns, rows, x, y),
+    };
+    let instrument = instrument(&document);
+    let mut heights = match document.text("Record3/DataLink/PointDataLink") {
+        Some(member) => binary(&mut archive, &document, member, number, points)?,
+        None if document.data.len() == points => document.data,
+        None => {
+            let place = Place::Element("Record3/DataList".into());
+            return Err(unexpected(place, "the number of data", document.data.len(), points));
+        }
+    };
+    heights.iter_mut().for_each(|raw| *raw = *raw * scale + offset);
+    let heights = Checked::new(heights);
+    Ok(OpenScan { format, detected, grid, instrument, declared: None, heights })
 }
 
 fn size(document: &Document) -> Result<(usize, usize), FileProblem> {
-    if document.contains("Record3/ListDimension") {
+    if document.has_list_of_points() {
         return Err(FileProblem::Unsupported {
             place: Place::Element("Record3/ListDimension".into()),
             what: "a list of points without a grid".into(),
@@ -99,7 +109,10 @@ fn size(document: &Document) -> Result<(usize, usize), FileProblem> {
             advice: "save one layer",
         });
     }
-    count(Place::Element("Record3/MatrixDimension".into()), columns, rows)
+    let place = Place::Element("Record3/MatrixDimension".into());
+    let (columns, rows) = count(place.clone(), columns, rows)?;
+    admit_points(columns as u64 * rows as u64, place)?;
+    Ok((columns, rows))
 }
 
 fn height_type(document: &Document) -> Result<Number, FileProblem> {
@@ -147,7 +160,7 @@ fn spacings(document: &Document, rows: usize) -> Result<(f64, f64), FileProblem>
     Ok((x, if rows == 1 { x } else { increment("CY")? }))
 }
 
-/// Heights of the binary matrix, NaN where they are not valid.
+/// Heights of the binary matrix in units of the document, NaN where they are not valid.
 fn binary(
     archive: &mut Archive<'_>,
     document: &Document,
@@ -155,33 +168,29 @@ fn binary(
     number: Number,
     points: usize,
 ) -> Result<Vec<f64>, FileProblem> {
-    let needed = points as u64 * number.bytes() as u64;
-    let stated = document.text("Record3/DataLink/MD5ChecksumPointData");
-    let mut raw = number.decode(&archive.binary(member, needed, stated)?);
-    if let Some(mask) = document.text("Record3/DataLink/ValidPointsLink") {
-        let stated = document.text("Record3/DataLink/MD5ChecksumValidPoints");
-        let mask = archive.binary(mask, points.div_ceil(8) as u64, stated)?;
-        for (index, height) in raw.iter_mut().enumerate() {
-            if mask[index / 8] & (1 << (index % 8)) == 0 {
+    const CHUNK: usize = 1 << 13;
+    let mut buffer = vec![0; CHUNK * number.bytes()];
+    let mut data = archive.binary(member, points as u64 * number.bytes() as u64)?;
+    let mut heights = Vec::with_capacity(points);
+    while heights.len() < points {
+        let part = &mut buffer[..CHUNK.min(points - heights.len()) * number.bytes()];
+        data.read_exact(part).map_err(|error| data.damaged(&error))?;
+        number.decode(part, &mut heights);
+    }
+    data.check(document.text("Record3/DataLink/MD5ChecksumPointData"))?;
+    let Some(mask) = document.text("Record3/DataLink/ValidPointsLink") else { return Ok(heights) };
+    let mut mask = archive.binary(mask, points.div_ceil(8) as u64)?;
+    for block in heights.chunks_mut(8 * CHUNK) {
+        let part = &mut buffer[..block.len().div_ceil(8)];
+        mask.read_exact(part).map_err(|error| mask.damaged(&error))?;
+        for (index, height) in block.iter_mut().enumerate() {
+            if part[index / 8] & (1 << (index % 8)) == 0 {
                 *height = f64::NAN;
             }
         }
     }
-    Ok(raw)
-}
-
-/// Heights of the XML document; an empty datum is a missing point.
-fn listed(document: &Document, points: usize) -> Result<Vec<f64>, FileProblem> {
-    let place = |index| Place::Element(format!("Record3/DataList/Datum[{}]", index + 1));
-    if document.data.len() != points {
-        let place = Place::Element("Record3/DataList".into());
-        return Err(unexpected(place, "the number of data", document.data.len(), points));
-    }
-    let datum = |(index, text): (usize, &String)| match text.trim() {
-        "" => Ok(f64::NAN),
-        text => text.parse().map_err(|_| unexpected(place(index), "a height", text, "a number")),
-    };
-    document.data.iter().enumerate().map(datum).collect()
+    mask.check(document.text("Record3/DataLink/MD5ChecksumValidPoints"))?;
+    Ok(heights)
 }
 
 fn instrument(document: &Document) -> Vec<(String, String)> {
