@@ -33,7 +33,7 @@ pub enum ArtifactError {
         reason: String,
     },
     /// The format library refused to write.
-    #[error("cannot write {}: {reason}; check the free space and the permissions of its folder", .path.display())]
+    #[error("cannot write {}: {reason}; free some space, or give yourself write access to its folder", .path.display())]
     Unwritable {
         /// The file.
         path: PathBuf,
