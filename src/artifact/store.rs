@@ -15,7 +15,8 @@ use std::time::Duration;
 use serde::Deserialize;
 use tempfile::TempDir;
 
-use super::table::{decode_rows, read_bytes};
+use super::arrays::arrays_content;
+use super::table::{decode_rows, read_bytes, table_info};
 use super::{
     ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, Storage, read_arrays,
     write_arrays, write_table,
@@ -77,7 +78,7 @@ impl RunView {
         Ok(Some(manifest))
     }
 
-    /// Compares size and digest of every output with the manifest.
+    /// Compares size, digest and content of every output with the manifest.
     ///
     /// # Errors
     /// [`ArtifactError::NoResult`], or for the first bad file [`ArtifactError::Io`] if it is
@@ -117,7 +118,7 @@ impl RunView {
         version: u32,
     ) -> Result<Vec<ArrayDataset>, ArtifactError> {
         let output = self.finished_output(stage, file)?;
-        self.verify_output(stage, &output)?;
+        self.verify_bytes(stage, &output)?;
         read_arrays(&self.file(stage, file), schema, version)
     }
 
@@ -140,11 +141,23 @@ impl RunView {
         })
     }
 
-    /// Compares size and digest of one output with what is expected.
+    /// Compares size, digest and content of one output with what is expected: first the bytes, which a
+    /// library must not see if they are damaged.
     ///
     /// # Errors
     /// As [`Self::verify`].
     pub fn verify_output(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
+        self.verify_bytes(stage, output)?;
+        let path = self.file(stage, &output.file);
+        let content = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("h5") => arrays_content(&path)?,
+            Some("arrow") => table_info(&path)?.content_digest,
+            _ => output.bytes_digest,
+        };
+        ArtifactError::check_digest(&path, output.content_digest, content)
+    }
+
+    fn verify_bytes(&self, stage: &str, output: &Output) -> Result<(), ArtifactError> {
         let path = self.file(stage, &output.file);
         let size = fs::metadata(&path).map_err(ArtifactError::io("read", &path))?.len();
         check_size(&path, output.size, size)?;
