@@ -6,6 +6,7 @@ mod plan;
 use crate::artifact::{
     ArtifactError, Identity, Manifest, RunFolder, RunView, SOLVES_FOLDER, SolveStore,
 };
+use crate::numerics::Interrupt;
 use crate::recipe::{Recipe, Violation, Work};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
@@ -15,7 +16,6 @@ use crate::stages::{
 use plan::Plan;
 use serde_json::Value;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Why a stage without any result is stale.
@@ -128,7 +128,7 @@ pub fn run(
     recipe: &Recipe,
     out: &Path,
     selection: Selection,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     // First what can be wrong without leaving a folder behind.
@@ -148,7 +148,7 @@ pub fn run_shared(
     scans: &[ScanFile],
     out: &Path,
     selection: Selection,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     let plan = Plan::new(recipe, Some(scans))?;
@@ -177,7 +177,7 @@ fn bring_up_to_date(
     plan: &Plan,
     folder: &RunFolder,
     selection: Selection,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     for stage in plan.stages() {

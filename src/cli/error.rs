@@ -68,6 +68,7 @@ impl From<ContactError> for CliError {
             ContactError::Rubber(_)
             | ContactError::OutOfRange { .. }
             | ContactError::BadHeight { .. } => Self::input(error),
+            ContactError::Interrupted => Self::Interrupted,
             ContactError::NotConverged { .. } | ContactError::AreaNotReached { .. } => {
                 Self::failure(error)
             }
@@ -79,6 +80,7 @@ impl From<FemError> for CliError {
     fn from(error: FemError) -> Self {
         match error {
             FemError::Rubber(_) | FemError::OutOfRange { .. } => Self::input(error),
+            FemError::Interrupted => Self::Interrupted,
             FemError::PathEnded { reached: PathEnd::NotStarted, .. } => {
                 Self::failure(format!("{error}; try other --columns"))
             }

@@ -44,6 +44,9 @@ pub enum ContactError {
         /// Points that changed between contact and gap in the last iteration.
         changes: usize,
     },
+    /// The user's interrupt.
+    #[error("interrupted")]
+    Interrupted,
     /// No pressure was found that gives the wanted contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {points} points: the nearest \
@@ -59,4 +62,12 @@ pub enum ContactError {
         /// Grid points.
         points: usize,
     },
+}
+
+impl ContactError {
+    /// Whether the solver found no solution; otherwise it was not asked for one that there could be, or
+    /// was interrupted.
+    pub fn is_no_solution(&self) -> bool {
+        matches!(self, Self::NotConverged { .. } | Self::AreaNotReached { .. })
+    }
 }

@@ -31,6 +31,9 @@ pub enum FemError {
         /// The last point that converged.
         reached: PathEnd,
     },
+    /// The user's interrupt.
+    #[error("interrupted")]
+    Interrupted,
     /// No pressure was found that gives the wanted contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {columns} columns: the nearest \
@@ -46,6 +49,14 @@ pub enum FemError {
         /// Columns of the mesh.
         columns: usize,
     },
+}
+
+impl FemError {
+    /// Whether the solver found no solution; otherwise it was not asked for one that there could be, or
+    /// was interrupted.
+    pub fn is_no_solution(&self) -> bool {
+        matches!(self, Self::PathEnded { .. } | Self::AreaNotReached { .. })
+    }
 }
 
 /// The last converged point of a path of growing pressure.

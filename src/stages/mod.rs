@@ -25,8 +25,8 @@ pub mod tables;
 
 use crate::artifact::{ArtifactError, Pending, SchemaVersion};
 use crate::contact::ContactError;
+use crate::numerics::Interrupt;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The stages in the order of the data.
 #[derive(
@@ -117,7 +117,7 @@ pub struct Watch<'a> {
     /// Called as work is done: pieces done, pieces known so far.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
     /// Set by the user's interrupt.
-    pub interrupted: &'a AtomicBool,
+    pub interrupted: &'a Interrupt,
 }
 
 impl Watch<'_> {
@@ -126,7 +126,7 @@ impl Watch<'_> {
     /// # Errors
     /// [`StageError::Interrupted`].
     pub fn check_interrupt(&self) -> Result<(), StageError> {
-        if self.interrupted.load(Ordering::Relaxed) {
+        if self.interrupted.is_set() {
             return Err(StageError::Interrupted);
         }
         Ok(())
@@ -234,6 +234,16 @@ pub enum StageError {
         other_points: usize,
         /// Its spacing in µm.
         other_spacing_um: f64,
+    },
+    /// Metadata of a table that are not a number.
+    #[error(
+        "{key} of a table of characterise is `{value}`, which is not a number: run with --force characterise"
+    )]
+    Metadata {
+        /// Its key.
+        key: &'static str,
+        /// Its value.
+        value: String,
     },
     /// Roughness parameters.
     #[error(transparent)]
@@ -395,4 +405,43 @@ pub enum SolveError {
     /// The user's interrupt.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl SolveError {
+    /// Whether there is no solution to be found, as opposed to a solve that was interrupted, asked for
+    /// the impossible, or could not be read or kept.
+    pub fn is_no_solution(&self) -> bool {
+        match self {
+            Self::Contact(error) => error.is_no_solution(),
+            Self::FiniteDeformation(error) => error.is_no_solution(),
+            Self::SoftContact(error) => {
+                matches!(error, crate::multiscale::SoftContactError::NotConverged { .. })
+            }
+            Self::Accuracy { .. } | Self::Unresolved { .. } => true,
+            Self::Law(_) | Self::Artifact(_) | Self::Interrupted => false,
+        }
+    }
+
+    /// Whether the user interrupted.
+    pub fn is_interrupt(&self) -> bool {
+        use crate::fem::error::FemError;
+        use crate::multiscale::SoftContactError;
+        matches!(
+            self,
+            Self::Interrupted
+                | Self::Contact(ContactError::Interrupted)
+                | Self::FiniteDeformation(FemError::Interrupted)
+                | Self::SoftContact(SoftContactError::Contact(ContactError::Interrupted))
+        )
+    }
+
+    /// The error of the stage: an interrupt and a failed store are that in every stage, for the rest
+    /// `contact` says whose contact it is.
+    pub fn in_stage(self, contact: impl FnOnce(Box<Self>) -> StageError) -> StageError {
+        match self {
+            Self::Artifact(error) => error.into(),
+            error if error.is_interrupt() => StageError::Interrupted,
+            error => contact(Box::new(error)),
+        }
+    }
 }

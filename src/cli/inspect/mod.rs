@@ -1,6 +1,7 @@
 //! `asperity inspect`: what is in a file or folder.
 
 mod artifact;
+mod child;
 mod folder;
 mod instrument;
 mod provenance;
@@ -50,6 +51,9 @@ pub(super) struct Inspect {
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
+    /// Read a file of arrays here: for the process that `inspect` starts for it.
+    #[arg(long, hide = true)]
+    in_this_process: bool,
     #[command(flatten)]
     scan: ScanOptions,
 }
@@ -75,8 +79,22 @@ enum Finding {
 
 impl Inspect {
     pub(super) fn run(&self) -> Result<(), CliError> {
+        if !self.in_this_process && self.is_hdf5()? {
+            self.scan.refuse(&self.path, "a file of arrays")?;
+            return print(&child::inspect(&self.path, self.json)?);
+        }
         let finding = self.find()?;
         print(&if self.json { json(&finding)? } else { finding.text() })
+    }
+
+    fn is_hdf5(&self) -> Result<bool, CliError> {
+        Ok(!self.path.is_dir() && Format::of(&self.start()?) == Format::Hdf5)
+    }
+
+    fn start(&self) -> Result<Vec<u8>, CliError> {
+        let path = &self.path;
+        first_bytes(path)
+            .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))
     }
 
     fn find(&self) -> Result<Finding, CliError> {
@@ -85,8 +103,7 @@ impl Inspect {
             self.scan.refuse(path, "a folder")?;
             return folder::read(path);
         }
-        let start = first_bytes(path)
-            .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
+        let start = self.start()?;
         let format = Format::of(&start);
         if let Some(what) = format.not_text() {
             self.scan.refuse(path, what)?;
