@@ -23,7 +23,11 @@ pub(super) fn inspect(path: &Path, json: bool) -> Result<String, CliError> {
     let output =
         command.stdin(Stdio::null()).output().map_err(|error| failed(error.to_string()))?;
     match output.status.code() {
-        Some(0) => String::from_utf8(output.stdout).map_err(|error| failed(error.to_string())),
+        // The library passes on texts as they are in the file.
+        Some(0) => String::from_utf8(output.stdout).map_err(|_| {
+            let path = path.display();
+            CliError::input(format!("{path}: a text in it is not UTF-8, so the file is damaged"))
+        }),
         Some(1) => Err(CliError::failure(told(&output))),
         Some(2) => Err(CliError::input(told(&output))),
         _ => Err(CliError::input(format!(
