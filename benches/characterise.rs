@@ -1,6 +1,7 @@
 //! Characterisation of a measuring campaign: 30 scans of 160 000 points, one in two with gaps; the
 //! kernels, and the stages ingest and characterise from text files to artifacts.
 
+use asperity::numerics::Interrupt;
 use asperity::pipeline::{self, Selection};
 use asperity::recipe::Recipe;
 use asperity::stages::Stage;
@@ -20,7 +21,6 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::hint::black_box;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 const SCANS: u64 = 30;
 const POINTS: usize = 160_000;
@@ -128,7 +128,7 @@ fn stages(criterion: &mut Criterion) {
     let recipe = write_campaign(folder.path());
     let stage = |stage: Stage| {
         let selection = Selection { only: Some(stage), force: Some(stage), from: None };
-        let interrupted = AtomicBool::new(false);
+        let interrupted = Interrupt::default();
         let out = folder.path().join("out");
         pipeline::run(&recipe, &out, selection, &interrupted, &|_| {}).unwrap();
     };

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
         };
-        let refined = on_grid(POINTS, FEWEST_POINTS, solve, view)?;
+        let refined = on_grid(POINTS, FEWEST_POINTS, solve, ContactError::is_no_solution, view)?;
         let error = refined.error.ok_or("the grids do not resolve the contact")?;
         println!(
             "{:9} {:9.5} {:9.5} {:9.1e}",

@@ -7,6 +7,7 @@ use crate::artifact::{
     ArtifactError, Identity, Manifest, RunFolder, RunView, SOLVES_FOLDER, SolveStore,
 };
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::numerics::Interrupt;
 use crate::recipe::{Recipe, Violation, Work};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
@@ -16,7 +17,6 @@ use crate::stages::{
 use plan::Plan;
 use serde_json::Value;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Why a stage without any result is stale.
@@ -142,7 +142,7 @@ pub fn run(
     recipe: &Recipe,
     out: &Path,
     selection: Selection,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     let ready = Ready::new(recipe, out, selection)?;
@@ -178,7 +178,7 @@ impl<'a> Ready<'a> {
     pub fn run(
         &self,
         folder: &RunFolder,
-        interrupted: &AtomicBool,
+        interrupted: &Interrupt,
         observer: &(dyn Fn(Event) + Sync),
     ) -> Result<(), PipelineError> {
         bring_up_to_date(&self.plan, folder, self.selection, interrupted, observer)
@@ -214,7 +214,7 @@ pub fn run_shared(
     scans: &[ScanFile],
     out: &Path,
     selection: Selection,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     let plan = Plan::new(recipe, Some(scans))?;
@@ -244,7 +244,7 @@ fn bring_up_to_date(
     plan: &Plan,
     folder: &RunFolder,
     selection: Selection,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
     let mut checked = false;

@@ -6,6 +6,7 @@
 //! write from one place.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::io;
 use std::path::Path;
 
 use hdf5::types::{FloatSize, TypeDescriptor, VarLenUnicode};
@@ -25,6 +26,13 @@ const DEFLATE_LEVEL: u8 = 4;
 
 /// Values hashed at a time: BLAKE3 works on many of its blocks of 1 KiB at once.
 const HASHED_VALUES: usize = 4096;
+
+/// Steps in which the image of a file grows in memory, and with which it is padded until it is closed: a disk
+/// that has room for the file must have room for the padding.
+const MEMORY_STEP_BYTES: usize = 4096;
+
+/// Deflate shortens by 1032 at most; the rest is for the shuffle filter's padding of a last chunk.
+const MOST_COMPRESSION: u64 = 2048;
 
 /// How the values of a file are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -94,12 +102,13 @@ pub struct DatasetInfo {
 /// Writes arrays to a file and returns the content digest, which covers schema name and version,
 /// names, units, attributes and exact bits of the values, whatever the order of the datasets.
 ///
-/// An existing file is overwritten; the data are not forced to the disk, see
+/// An existing file is overwritten, read back and compared; the data are not forced to the disk, see
 /// [`Pending::commit`](super::Pending::commit).
 ///
 /// # Errors
 /// [`ArtifactError::Dataset`] for names that are empty or used twice, an empty unit, or text that
-/// HDF5 cannot hold; [`ArtifactError::Unwritable`] if the file cannot be written.
+/// HDF5 cannot hold; [`ArtifactError::Unwritable`] if the file cannot be written or holds something else
+/// afterwards.
 pub fn write_arrays(
     path: &Path,
     schema: &str,
@@ -118,7 +127,7 @@ pub fn write_arrays(
         ("content_digest", Attribute::Text(digest.to_string())),
     ];
     let write = || -> hdf5::Result<()> {
-        let file = unlocked().create(path)?;
+        let file = in_memory().create(path)?;
         for (name, value) in &header {
             write_attribute(&file, name, value)?;
         }
@@ -126,11 +135,28 @@ pub fn write_arrays(
         file.flush()?;
         file.close()
     };
-    write().map_err(|error| ArtifactError::Unwritable {
-        path: path.to_path_buf(),
-        reason: innermost(&error),
+    let unwritable =
+        |reason: String| ArtifactError::Unwritable { path: path.to_path_buf(), reason };
+    write().map_err(|error| match error_number(&error) {
+        Some(number) => ArtifactError::io("write", path)(io::Error::from_raw_os_error(number)),
+        None => unwritable(innermost(&error)),
     })?;
+    check_written(path, digest).map_err(unwritable)?;
     Ok(digest)
+}
+
+/// Reads a file back and compares its content with what was to be written. The library reports no
+/// error of what it writes when a dataset is closed, a chunk that could not be compressed for one.
+fn check_written(path: &Path, expected: Digest) -> Result<(), String> {
+    let read = || {
+        let reader = Reader::open(path)?;
+        reader.check_content(&reader.header()?)
+    };
+    match read() {
+        Ok(found) if found == expected => Ok(()),
+        Ok(_) => Err("its content was read back differently".to_owned()),
+        Err(error) => Err(format!("it cannot be read back: {error}")),
+    }
 }
 
 /// Reads a file that [`write_arrays`] wrote; the datasets come sorted by name.
@@ -158,13 +184,25 @@ pub fn read_arrays(
 pub fn arrays_info(path: &Path) -> Result<ArraysInfo, ArtifactError> {
     let reader = Reader::open(path)?;
     let header = reader.header()?;
-    let datasets = reader.datasets(&header)?.into_iter().map(|dataset| DatasetInfo {
-        name: dataset.name,
-        unit: dataset.unit,
-        length: dataset.values.len(),
-        attributes: dataset.attributes,
-    });
-    Ok(ArraysInfo { datasets: datasets.collect(), ..header })
+    let mut datasets = Vec::new();
+    reader.visit(&header, |dataset| {
+        datasets.push(DatasetInfo {
+            name: dataset.name,
+            unit: dataset.unit,
+            length: dataset.values.len(),
+            attributes: dataset.attributes,
+        });
+    })?;
+    Ok(ArraysInfo { datasets, ..header })
+}
+
+/// The content digest of a file of arrays, computed from its content and equal to the recorded one.
+///
+/// # Errors
+/// As [`arrays_info`].
+pub(super) fn arrays_content(path: &Path) -> Result<Digest, ArtifactError> {
+    let reader = Reader::open(path)?;
+    reader.check_content(&reader.header()?)
 }
 
 fn check_datasets(datasets: &[ArrayDataset]) -> Result<(), ArtifactError> {
@@ -235,20 +273,31 @@ pub(super) fn unlocked() -> FileBuilder {
     builder
 }
 
-/// An open file and its path for the messages.
+/// Access that builds a file in memory and writes it when it is flushed, whose errors are reported: those of
+/// writes when a dataset is closed are not.
+fn in_memory() -> FileBuilder {
+    let mut builder = unlocked();
+    builder.with_fapl(|access| access.core_options(MEMORY_STEP_BYTES, true));
+    builder
+}
+
+/// An open file, its path for the messages and its size.
 struct Reader<'a> {
     path: &'a Path,
     file: File,
+    bytes: u64,
 }
 
 impl<'a> Reader<'a> {
     fn open(path: &'a Path) -> Result<Self, ArtifactError> {
         // Separates a file that is not there or not ours to read from one that is not HDF5.
-        std::fs::File::open(path).map_err(ArtifactError::io("open", path))?;
+        let bytes = std::fs::File::open(path)
+            .and_then(|file| Ok(file.metadata()?.len()))
+            .map_err(ArtifactError::io("open", path))?;
         let file = unlocked()
             .open(path)
             .map_err(|error| ArtifactError::unreadable(path, FORMAT, innermost(&error)))?;
-        Ok(Self { path, file })
+        Ok(Self { path, file, bytes })
     }
 
     fn unreadable(&self, error: hdf5::Error) -> ArtifactError {
@@ -281,22 +330,41 @@ impl<'a> Reader<'a> {
 
     fn datasets(&self, header: &ArraysInfo) -> Result<Vec<ArrayDataset>, ArtifactError> {
         let mut datasets = Vec::new();
-        self.collect(&self.file, &mut datasets)?;
-        datasets.sort_by(|a, b| a.name.cmp(&b.name));
-        let found = content_digest(&header.schema, header.version, &datasets);
-        ArtifactError::check_digest(self.path, header.content_digest, found)?;
+        self.visit(header, |dataset| datasets.push(dataset))?;
         Ok(datasets)
     }
 
-    fn collect(&self, group: &Group, into: &mut Vec<ArrayDataset>) -> Result<(), ArtifactError> {
+    /// The digest of the content, after it has been compared with the recorded one.
+    fn check_content(&self, header: &ArraysInfo) -> Result<Digest, ArtifactError> {
+        self.visit(header, drop)?;
+        Ok(header.content_digest)
+    }
+
+    /// Reads the datasets one by one, sorted by name, and compares their digest with the recorded one.
+    fn visit(
+        &self,
+        header: &ArraysInfo,
+        mut each: impl FnMut(ArrayDataset),
+    ) -> Result<(), ArtifactError> {
+        let mut datasets = Vec::new();
+        self.collect(&self.file, &mut datasets)?;
+        datasets.sort_by_cached_key(|dataset| name_of(dataset));
+        let mut content = ContentHasher::new(&header.schema, header.version);
+        for dataset in datasets {
+            let dataset = self.dataset(&dataset)?;
+            content.add(&dataset);
+            each(dataset);
+        }
+        ArtifactError::check_digest(self.path, header.content_digest, content.finish())
+    }
+
+    fn collect(&self, group: &Group, into: &mut Vec<Dataset>) -> Result<(), ArtifactError> {
         let failed = |error| self.unreadable(error);
         // Opened by their names: HDF5 looks through the whole file for the name of each object that
         // was not, which takes the square of the number of datasets.
         for name in group.member_names().map_err(failed)? {
             match group.loc_type_by_name(&name).map_err(failed)? {
-                LocationType::Dataset => {
-                    into.push(self.dataset(&group.dataset(&name).map_err(failed)?)?);
-                }
+                LocationType::Dataset => into.push(group.dataset(&name).map_err(failed)?),
                 LocationType::Group => {
                     self.collect(&group.group(&name).map_err(failed)?, into)?;
                 }
@@ -307,7 +375,7 @@ impl<'a> Reader<'a> {
     }
 
     fn dataset(&self, dataset: &Dataset) -> Result<ArrayDataset, ArtifactError> {
-        let name = dataset.name().trim_start_matches('/').to_owned();
+        let name = name_of(dataset);
         let owner = format!("dataset `{name}`");
         let unit = match self.attribute(dataset, &owner, "unit")? {
             Attribute::Text(unit) => unit,
@@ -322,8 +390,22 @@ impl<'a> Reader<'a> {
             .filter(|key| key != "unit")
             .map(|key| Ok((key.clone(), self.attribute(dataset, &owner, &key)?)))
             .collect::<Result<_, ArtifactError>>()?;
+        self.check_length(&owner, dataset.size())?;
         let values = dataset.read_raw::<f64>().map_err(|error| self.unreadable(error))?;
         Ok(ArrayDataset { name, unit, attributes, values })
+    }
+
+    /// Refuses a number of values that no file of this size can hold before they are given memory.
+    fn check_length(&self, owner: &str, values: usize) -> Result<(), ArtifactError> {
+        let most = self.bytes.saturating_mul(MOST_COMPRESSION) / size_of::<f64>() as u64;
+        if values as u64 <= most {
+            return Ok(());
+        }
+        let reason = format!(
+            "{owner} has {values} values, more than a file of {} bytes can hold",
+            self.bytes
+        );
+        Err(ArtifactError::unreadable(self.path, FORMAT, reason))
     }
 
     fn attribute(
@@ -353,22 +435,40 @@ impl<'a> Reader<'a> {
     }
 }
 
+fn name_of(dataset: &Dataset) -> String {
+    dataset.name().trim_start_matches('/').to_owned()
+}
+
 fn content_digest(schema: &str, version: u32, datasets: &[ArrayDataset]) -> Digest {
     let sorted: BTreeMap<&str, &ArrayDataset> =
         datasets.iter().map(|dataset| (dataset.name.as_str(), dataset)).collect();
-    let mut hasher = blake3::Hasher::new();
-    hash_text(&mut hasher, schema);
-    hasher.update(&version.to_le_bytes());
-    for (name, dataset) in sorted {
-        hash_text(&mut hasher, name);
-        hash_text(&mut hasher, &dataset.unit);
+    let mut content = ContentHasher::new(schema, version);
+    sorted.values().for_each(|dataset| content.add(dataset));
+    content.finish()
+}
+
+/// The content digest of datasets that come sorted by name.
+struct ContentHasher(blake3::Hasher);
+
+impl ContentHasher {
+    fn new(schema: &str, version: u32) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hash_text(&mut hasher, schema);
+        hasher.update(&version.to_le_bytes());
+        Self(hasher)
+    }
+
+    fn add(&mut self, dataset: &ArrayDataset) {
+        let hasher = &mut self.0;
+        hash_text(hasher, &dataset.name);
+        hash_text(hasher, &dataset.unit);
         hasher.update(&(dataset.attributes.len() as u64).to_le_bytes());
         for (key, value) in &dataset.attributes {
-            hash_text(&mut hasher, key);
+            hash_text(hasher, key);
             match value {
-                Attribute::Float(x) => hash_text(&mut hasher, &format!("f64 {:x}", x.to_bits())),
-                Attribute::Integer(i) => hash_text(&mut hasher, &format!("i64 {i}")),
-                Attribute::Text(text) => hash_text(&mut hasher, &format!("text {text}")),
+                Attribute::Float(x) => hash_text(hasher, &format!("f64 {:x}", x.to_bits())),
+                Attribute::Integer(i) => hash_text(hasher, &format!("i64 {i}")),
+                Attribute::Text(text) => hash_text(hasher, &format!("text {text}")),
             }
         }
         hasher.update(&(dataset.values.len() as u64).to_le_bytes());
@@ -379,7 +479,18 @@ fn content_digest(schema: &str, version: u32, datasets: &[ArrayDataset]) -> Dige
             hasher.update(&bytes);
         }
     }
-    Digest::of_hasher(&hasher)
+
+    fn finish(self) -> Digest {
+        Digest::of_hasher(&self.0)
+    }
+}
+
+/// The number of the operating system's error in the first cause, which the library has as `errno = 28`.
+fn error_number(error: &hdf5::Error) -> Option<i32> {
+    let cause = innermost(error);
+    let (_, number) = cause.split_once("errno = ")?;
+    let digits = number.find(|digit: char| !digit.is_ascii_digit()).unwrap_or(number.len());
+    number[..digits].parse().ok().filter(|number| *number != 0)
 }
 
 /// The first cause in the library's stack of errors, in one line.

@@ -2,12 +2,12 @@
 
 use super::Failure;
 use crate::artifact::RunView;
+use crate::numerics::Interrupt;
 use crate::pipeline::{self, Selection};
 use crate::recipe::Recipe;
 use crate::surface::Wave;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use tempfile::TempDir;
 
 const RUBBER: &str = include_str!("../../data/rubber/table_2_1.toml");
@@ -41,7 +41,7 @@ impl Campaign {
     /// Runs every stage into a new folder and hands its results to `read`.
     pub fn run<T>(&self, read: impl FnOnce(&RunView) -> Result<T, Failure>) -> Result<T, Failure> {
         let run = tempfile::tempdir_in(self.path())?;
-        let never = AtomicBool::new(false);
+        let never = Interrupt::default();
         pipeline::run(&self.recipe, run.path(), Selection::default(), &never, &|_| ())?;
         read(&RunView::of(PathBuf::from(run.path())))
     }

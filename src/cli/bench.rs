@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::CliError;
 use super::output::{json, note, print, refuse_existing, write_file};
+use super::{CliError, threads};
 use crate::bench::figure::figure;
 use crate::bench::growth::{self, Job};
 use crate::bench::measure::Effort;
@@ -72,6 +72,7 @@ impl Bench {
     /// # Errors
     /// [`CliError`].
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        threads::start(None)?;
         if let Some(job) = self.growth_job {
             return print(&json(&job.run().map_err(CliError::Failure)?)?);
         }
@@ -89,7 +90,10 @@ impl Bench {
     /// Whether the results have a place is known before they are computed.
     fn refuse_early(&self) -> Result<(), CliError> {
         let Some(path) = &self.to else { return Ok(()) };
-        let document = fs::read_to_string(path).ok().filter(|_| renewed(path, "").is_some());
+        let document = match renewed(path, "")? {
+            Some(_) => Some(fs::read_to_string(path).map_err(CliError::failure)?),
+            None => None,
+        };
         refuse_existing(Some(path), self.force || document.is_some())?;
         if self.growth || self.format != Format::Markdown {
             return Ok(());
@@ -135,7 +139,7 @@ impl Bench {
         match &self.to {
             None => print(text),
             Some(path) if self.format == Format::Markdown => {
-                write_text(path, &renewed(path, text).unwrap_or_else(|| text.to_owned()))
+                write_text(path, &renewed(path, text)?.unwrap_or_else(|| text.to_owned()))
             }
             Some(path) => write_text(path, text),
         }
@@ -143,8 +147,13 @@ impl Bench {
 }
 
 /// The document at a path with these results, if it has a place for them.
-fn renewed(path: &Path, results: &str) -> Option<String> {
-    report::renewed(&fs::read_to_string(path).ok()?, results)
+fn renewed(path: &Path, results: &str) -> Result<Option<String>, CliError> {
+    match fs::read_to_string(path) {
+        Ok(document) => Ok(report::renewed(&document, results)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        // To write over it would lose what it says.
+        Err(error) => Err(CliError::input(format!("cannot read {}: {error}", path.display()))),
+    }
 }
 
 fn write_text(path: &Path, text: &str) -> Result<(), CliError> {

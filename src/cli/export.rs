@@ -162,7 +162,7 @@ impl Export {
     /// error of their own.
     fn warn_of_doubt(&self, stage: &str, quiet: bool) {
         let there = self.run.join(stage).exists();
-        let last_run = LastRun::read(&self.run).filter(|_| there && !quiet);
+        let last_run = LastRun::read(&self.run, quiet).filter(|_| there && !quiet);
         if let Some(doubt) = last_run.and_then(|last_run| last_run.doubt(&self.run, stage)) {
             note(quiet, format_args!("warning: {doubt}"));
         }

@@ -1,36 +1,44 @@
 //! Ctrl-C, and the signal by which a scheduler ends a job, for commands that have something to clean up; the
 //! others simply end.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag;
 
 use super::CliError;
+use crate::numerics;
 
 /// Whether the user has pressed Ctrl-C, or SIGTERM has come, since the installation.
 #[derive(Debug, Clone)]
-pub(super) struct Interrupt(Arc<AtomicBool>);
+pub(super) struct Interrupt(numerics::Interrupt);
 
 impl Interrupt {
-    /// Takes both over for the rest of the process; once for each process.
+    /// Takes them over for the rest of the process; once for each process. The first signal asks for an end, the
+    /// second one ends the process at once, which leaves what a kill leaves.
     ///
     /// # Errors
     /// [`CliError::Failure`] if the operating system refuses.
     pub(super) fn install() -> Result<Self, CliError> {
-        let flag = Arc::new(AtomicBool::new(false));
-        let handler = Arc::clone(&flag);
-        ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))
-            .map_err(CliError::failure)?;
-        Ok(Self(flag))
+        let interrupt = numerics::Interrupt::default();
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            // In this order: the flag is looked at before it is set.
+            let code = i32::from(CliError::Interrupted.exit_code());
+            flag::register_conditional_shutdown(signal, code, interrupt.flag())
+                .and_then(|_| flag::register(signal, interrupt.flag()))
+                .map_err(|error| {
+                    CliError::failure(format!("the signal {signal} cannot be handled: {error}"))
+                })?;
+        }
+        Ok(Self(interrupt))
     }
 
     /// The flag itself, for computations that look at it.
-    pub(super) fn flag(&self) -> &AtomicBool {
+    pub(super) fn flag(&self) -> &numerics::Interrupt {
         &self.0
     }
 
     /// # Errors
     /// [`CliError::Interrupted`] after Ctrl-C.
     pub(super) fn check(&self) -> Result<(), CliError> {
-        if self.0.load(Ordering::Relaxed) { Err(CliError::Interrupted) } else { Ok(()) }
+        if self.0.is_set() { Err(CliError::Interrupted) } else { Ok(()) }
     }
 }

@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::CliError;
-use super::output::json;
+use super::output::{json, note};
 use super::recipe_options::{with_scans, with_tolerance};
 use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
 use crate::pipeline::{self, State};
@@ -145,9 +145,27 @@ impl LastRun {
         write_note(out, text.as_bytes()).map_err(CliError::failure)
     }
 
-    /// None where no run left one that is whole.
-    pub(super) fn read(out: &Path) -> Option<Self> {
-        Self::whole(&std::fs::read(out.join(Self::FILE)).ok()?).ok()
+    /// None where no run left one that is whole; then a warning says what is wrong with it.
+    pub(super) fn read(out: &Path, quiet: bool) -> Option<Self> {
+        let path = out.join(Self::FILE);
+        let read = match std::fs::read(&path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
+            read => read.map_err(|error| error.to_string()).and_then(|bytes| Self::whole(&bytes)),
+        };
+        match read {
+            Ok(last_run) => Some(last_run),
+            Err(reason) => {
+                let path = path.display();
+                note(
+                    quiet,
+                    format_args!(
+                        "warning: {path}: {reason}; whether the results still are those of their recipe \
+                         cannot be told (asperity run writes it anew)"
+                    ),
+                );
+                None
+            }
+        }
     }
 
     /// Whether the one in the folder is whole, or what is wrong with it; none if there is none.

@@ -25,6 +25,7 @@ mod solve;
 mod status;
 mod sweep;
 mod synth;
+mod threads;
 mod values;
 mod verify;
 

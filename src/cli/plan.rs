@@ -8,7 +8,7 @@ use super::interrupt::Interrupt;
 use super::output::{json, print, significant};
 use super::progress::Spinner;
 use super::recipe_options::RecipeOptions;
-use super::{CliError, values};
+use super::{CliError, threads, values};
 use crate::forecast::{Forecast, ScaleModel, forecast};
 
 const EXAMPLES: &str = "\
@@ -43,10 +43,8 @@ impl PlanCommand {
     /// [`CliError`].
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         let recipe = self.recipe.recipe()?;
-        if self.threads == Some(0) {
-            return Err(CliError::input("--threads is 0: give at least 1"));
-        }
-        let threads = self.threads.unwrap_or_else(rayon::current_num_threads);
+        let here = threads::start(None)?;
+        let threads = threads::checked(self.threads)?.unwrap_or(here);
         let interrupt = Interrupt::install()?;
         let spinner = Spinner::new(quiet, "trying the half-space");
         let forecast = forecast(&recipe, threads, interrupt.flag())?;

@@ -62,7 +62,7 @@ impl Plot {
             let run = run.display();
             CliError::input(format!("{run} has no figure `{name}`: that takes {}", kind.wants))
         })?;
-        let doubts = LastRun::read(run).map(|last| last.doubts(&view)).unwrap_or_default();
+        let doubts = LastRun::read(run, quiet).map(|last| last.doubts(&view)).unwrap_or_default();
         for (_, doubt) in doubts.iter().filter(|(stage, _)| kind.stages.contains(stage)) {
             note(quiet, format_args!("warning: {doubt}"));
         }

@@ -36,7 +36,7 @@ impl Report {
     /// [`CliError`].
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         let view = run_folder::view_of_case(&self.run)?;
-        let last_run = LastRun::read(&self.run);
+        let last_run = LastRun::read(&self.run, quiet);
         let origin = last_run.map_or_else(Origin::default, |last| last.origin(&view));
         for doubt in origin.doubts.values() {
             note(quiet, format_args!("warning: {doubt}"));

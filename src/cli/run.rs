@@ -12,7 +12,7 @@ use super::output::{json, note, print};
 use super::progress::{Bar, Progress};
 use super::recipe_options::{RecipeOptions, TakeOver};
 use super::sweep::{claim_sweep, note_recipes, tell};
-use super::{CliError, values};
+use super::{CliError, threads, values};
 use crate::artifact::{Manifest, RunFolder, RunView};
 use crate::files::name::path_text;
 use crate::pipeline::{Event, PipelineError, Ready, Selection};
@@ -78,15 +78,7 @@ impl Run {
     /// [`CliError`].
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         let (recipe, last_run) = self.recipe.recipe_and_origin()?;
-        if let Some(threads) = self.threads {
-            if threads == 0 {
-                return Err(CliError::input("--threads is 0: give at least 1"));
-            }
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build_global()
-                .map_err(CliError::failure)?;
-        }
+        threads::start(self.threads)?;
         let out = self.recipe.out();
         let selection = Selection { only: self.only, from: self.from, force: self.force };
         if recipe.sweep.is_some() {

@@ -183,7 +183,10 @@ impl Synth {
         }
         let names: Vec<OsString> =
             scans.iter().map(|scan| format!("{}.txt", scan.name).into()).collect();
-        let others = other_scans(&self.out, &names);
+        let others = other_scans(&self.out, &names).map_err(|error| {
+            let folder = self.out.display();
+            CliError::failure(format!("cannot look for other scans in {folder}: {error}"))
+        })?;
         if others > 0 {
             note(
                 quiet,
@@ -203,13 +206,14 @@ impl Synth {
 
 /// Number of scans in the folder that were not written now; they would be taken for the same
 /// specimen.
-fn other_scans(folder: &Path, written: &[OsString]) -> usize {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+fn other_scans(folder: &Path, written: &[OsString]) -> std::io::Result<usize> {
     let other = |name: &OsString| {
         let text = name.to_string_lossy();
         text.starts_with("scan_") && text.ends_with(".txt") && !written.contains(name)
     };
-    entries.filter(|entry| other(&entry.file_name())).count()
+    let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name()));
+    let names: Vec<OsString> = names.collect::<std::io::Result<_>>()?;
+    Ok(names.iter().filter(|name| other(name)).count())
 }
 
 #[cfg(test)]

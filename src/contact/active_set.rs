@@ -9,6 +9,7 @@ use super::direct::{self, Dense};
 use super::half_space::HalfSpace;
 use super::preconditioner::Preconditioner;
 use super::solution::displacement_scale;
+use crate::numerics::Interrupt;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
 /// How accurate a grid has to be.
@@ -36,6 +37,8 @@ pub(super) struct Contact<'a> {
     /// Displacement under `pressure`.
     pub displacement: Vec<f64>,
     pub mean_separation: f64,
+    /// Ends the iteration early, without convergence.
+    pub interrupt: &'a Interrupt,
 }
 
 /// What an iteration ended with.
@@ -122,6 +125,9 @@ impl Contact<'_> {
             let changes = wrong.leave.len() + wrong.enter.len();
             let outcome =
                 |converged| Outcome { converged, iterations: iteration, applications, changes };
+            if self.interrupt.is_set() {
+                return outcome(false);
+            }
             match goal {
                 Goal::Start if changes == 0 || iteration == START_ITERATIONS => {
                     self.drop_tension();
@@ -239,7 +245,7 @@ impl Contact<'_> {
             self.space.displacement_on(set, v, &mut displaced);
             preconditioner.apply(self.space, set, &displaced, out);
         };
-        let report = gmres(operator, &mut correction, limits);
+        let report = gmres(operator, &mut correction, limits, self.interrupt);
         self.place(set, t.iter().zip(&correction).map(|(t, dt)| t + dt));
         // And for the first residual and the last displacement.
         report.iterations + 2
@@ -368,6 +374,7 @@ mod tests {
             pressure: vec![1e4; n],
             displacement: vec![0.0; n],
             mean_separation: 0.0,
+            interrupt: &Interrupt::default(),
         };
         let outcome = contact.solve(Goal::Solution { tolerance: 0.0 });
         assert!(outcome.converged && outcome.changes == 0);

@@ -46,6 +46,9 @@ pub enum ContactError {
         /// Points that changed between contact and gap in the last iteration.
         changes: usize,
     },
+    /// The user's interrupt.
+    #[error("interrupted")]
+    Interrupted,
     /// No pressure was found that gives the wanted contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {points} points: the nearest \
@@ -68,6 +71,15 @@ impl HasKind for ContactError {
         match self {
             Self::Rubber(_) | Self::OutOfRange { .. } | Self::BadHeight { .. } => ErrorKind::Input,
             Self::NotConverged { .. } | Self::AreaNotReached { .. } => ErrorKind::Failure,
+            Self::Interrupted => ErrorKind::Interrupted,
         }
+    }
+}
+
+impl ContactError {
+    /// Whether the solver found no solution; otherwise it was not asked for one that there could be, or
+    /// was interrupted.
+    pub fn is_no_solution(&self) -> bool {
+        matches!(self, Self::NotConverged { .. } | Self::AreaNotReached { .. })
     }
 }

@@ -192,11 +192,12 @@ impl Refinement {
 /// than `least` points are left out.
 ///
 /// # Errors
-/// Those of `solve` on the finest grid; none is given where a coarser grid has no solution.
+/// Those of `solve`; on a coarser grid only those that are not `no_solution`, behind which the estimate begins anew.
 pub fn on_grid<S, E>(
     points: usize,
     least: usize,
     mut solve: impl FnMut(usize) -> Result<S, E>,
+    no_solution: impl Fn(&E) -> bool,
     view: impl Fn(&S) -> OnGrid,
 ) -> Result<Refined<S>, E> {
     let coarser = (1..=DIFFERENCES).rev().map(|halvings| points >> halvings);
@@ -204,7 +205,8 @@ pub fn on_grid<S, E>(
     for coarse in coarser.filter(|&coarse| coarse >= least) {
         match solve(coarse) {
             Ok(solution) => grids.push(view(&solution)),
-            Err(_) => grids.clear(),
+            Err(error) if no_solution(&error) => grids.clear(),
+            Err(error) => return Err(error),
         }
     }
     let solution = solve(points)?;
@@ -331,14 +333,24 @@ mod tests {
     #[test]
     fn a_given_grid_is_judged_by_the_coarser_ones() {
         let solve = |points: usize| quadratic(points).map(Option::unwrap);
-        let refined = on_grid(64, 8, solve, |grid| *grid).unwrap();
+        let refined = on_grid(64, 8, solve, |()| false, |grid| *grid).unwrap();
         assert_eq!(refined.grids.iter().map(|g| g.points).collect::<Vec<_>>(), [8, 16, 32, 64]);
         approx::assert_relative_eq!(
             refined.error.unwrap().friction_coefficient,
             15.0 / 4096.0,
             max_relative = 1e-12
         );
-        let broken = |points: usize| if points == 16 { Err(()) } else { solve(points) };
-        assert_eq!(on_grid(64, 8, broken, |grid| *grid).unwrap().error, None);
+    }
+
+    #[test]
+    fn only_a_grid_without_solution_is_passed_over() {
+        let solve = |points: usize| match points {
+            16 => Err("the disk is full"),
+            _ => quadratic(points).map(Option::unwrap).map_err(|()| "never"),
+        };
+        let passed_over = on_grid(64, 8, solve, |_| true, |grid| *grid).unwrap();
+        assert_eq!((passed_over.error, passed_over.grids.len()), (None, 2));
+        let told = on_grid(64, 8, solve, |why| *why == "no solution", |grid| *grid);
+        assert_eq!(told.unwrap_err(), "the disk is full");
     }
 }

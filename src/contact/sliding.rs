@@ -5,6 +5,7 @@ use super::edges::EdgeReader;
 use super::error::ContactError;
 use super::half_space::HalfSpace;
 use super::solution::{ContactSolution, Fields};
+use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use realfft::RealFftPlanner;
 
@@ -48,6 +49,7 @@ pub struct SlidingContact {
     grids: Vec<Grid>,
     slopes: Vec<f64>,
     height_range: f64,
+    interrupt: Interrupt,
 }
 
 /// One of the nested grids.
@@ -83,7 +85,14 @@ impl SlidingContact {
         let finest = &mut grids[0];
         let slopes = finest.space.slope(&finest.heights);
         grids.reverse();
-        Ok(Self { speed, grids, slopes, height_range: extremes.1 - extremes.0 })
+        let (height_range, interrupt) = (extremes.1 - extremes.0, Interrupt::default());
+        Ok(Self { speed, grids, slopes, height_range, interrupt })
+    }
+
+    /// With an interrupt that ends a solve between two Krylov iterations.
+    #[must_use]
+    pub fn interruptible(self, interrupt: &Interrupt) -> Self {
+        Self { interrupt: interrupt.clone(), ..self }
     }
 
     /// Number of points of the finest grid.
@@ -95,7 +104,8 @@ impl SlidingContact {
     ///
     /// # Errors
     /// [`ContactError::OutOfRange`] for a pressure that is not positive and finite;
-    /// [`ContactError::NotConverged`] if the residual stays above [`RESIDUAL_TOLERANCE`].
+    /// [`ContactError::NotConverged`] if the residual stays above [`RESIDUAL_TOLERANCE`];
+    /// [`ContactError::Interrupted`].
     pub fn solve(&mut self, mean_pressure: f64) -> Result<ContactSolution, ContactError> {
         if !(mean_pressure > 0.0 && mean_pressure.is_finite()) {
             return Err(ContactError::OutOfRange {
@@ -107,7 +117,7 @@ impl SlidingContact {
         if let Some(solution) = self.full_contact(mean_pressure) {
             return self.accept(solution, None);
         }
-        let (solution, outcome) = self.partial_contact(mean_pressure);
+        let (solution, outcome) = self.partial_contact(mean_pressure)?;
         self.accept(solution, Some(outcome))
     }
 
@@ -175,7 +185,10 @@ impl SlidingContact {
         pressure
     }
 
-    fn partial_contact(&mut self, mean_pressure: f64) -> (ContactSolution, Outcome) {
+    fn partial_contact(
+        &mut self,
+        mean_pressure: f64,
+    ) -> Result<(ContactSolution, Outcome), ContactError> {
         let points = self.points();
         let coarsest = &self.grids[0];
         let mut pressure = vec![mean_pressure; coarsest.heights.len()];
@@ -193,8 +206,12 @@ impl SlidingContact {
                 kernel: &grid.kernel,
                 mean_pressure,
                 mean_separation: 0.0,
+                interrupt: &self.interrupt,
             };
             let outcome = contact.solve(goal);
+            if self.interrupt.is_set() {
+                return Err(ContactError::Interrupted);
+            }
             applications += (outcome.applications * grid.heights.len()) as f64 / points as f64;
             if !finest {
                 pressure = contact.pressure;
@@ -210,7 +227,7 @@ impl SlidingContact {
             let mut solution = fields.evaluate(&mut grid.space);
             solution.iterations = outcome.iterations;
             solution.operator_applications = applications;
-            return (solution, outcome);
+            return Ok((solution, outcome));
         }
         unreachable!("there is always a finest grid")
     }
@@ -338,6 +355,17 @@ mod tests {
                 assert!(matches!(error, ContactError::NotConverged { changes: 0, .. }), "{error}");
             }
         }
+    }
+
+    #[test]
+    fn an_interrupt_ends_a_solve_and_is_no_answer() {
+        let interrupt = Interrupt::default();
+        let mut contact = sine().interruptible(&interrupt);
+        let solution = contact.solve(1e4).unwrap();
+        interrupt.set();
+        assert_eq!(contact.solve(1e4), Err(ContactError::Interrupted));
+        assert_eq!(contact.solve_for_area(0.3, 1e-6), Err(ContactError::Interrupted));
+        assert_eq!(sine().solve(1e4).unwrap(), solution);
     }
 
     #[test]

@@ -32,6 +32,9 @@ pub enum FemError {
         /// The last point that converged.
         reached: PathEnd,
     },
+    /// The user's interrupt.
+    #[error("interrupted")]
+    Interrupted,
     /// No pressure was found that gives the wanted contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {columns} columns: the nearest \
@@ -54,7 +57,16 @@ impl HasKind for FemError {
         match self {
             Self::Rubber(_) | Self::OutOfRange { .. } => ErrorKind::Input,
             Self::PathEnded { .. } | Self::AreaNotReached { .. } => ErrorKind::Failure,
+            Self::Interrupted => ErrorKind::Interrupted,
         }
+    }
+}
+
+impl FemError {
+    /// Whether the solver found no solution; otherwise it was not asked for one that there could be, or
+    /// was interrupted.
+    pub fn is_no_solution(&self) -> bool {
+        matches!(self, Self::PathEnded { .. } | Self::AreaNotReached { .. })
     }
 }
 

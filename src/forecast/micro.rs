@@ -3,6 +3,7 @@
 use super::{CurveForecast, ForecastError, Trial};
 use crate::contact::SlidingContact;
 use crate::multiscale::scales::Scales;
+use crate::numerics::Interrupt;
 use crate::stages::micro::Micro;
 use crate::stages::{SolveError, StageError};
 use serde::Serialize;
@@ -54,6 +55,7 @@ pub(super) fn microscales(
     parameters: &Micro,
     trial: &Trial,
     forecasts: &[CurveForecast],
+    interrupt: &Interrupt,
 ) -> Result<Vec<MicroForecast>, ForecastError> {
     let rubber = &trial.rubber;
     let mut found: Vec<(MicroForecast, Scales)> = Vec::new();
@@ -77,14 +79,17 @@ pub(super) fn microscales(
                 forecasts.iter().find(same).map_or(1.0, |curve| f64::from(curve.realisations));
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let solve = || -> Result<f64, SolveError> {
-                let mut contact = SlidingContact::new(rubber, speed_mm_s / 1e3, period, &heights)?;
+                let mut contact = SlidingContact::new(rubber, speed_mm_s / 1e3, period, &heights)?
+                    .interruptible(interrupt);
                 let solution = contact.solve(row.pressure_mpa * 1e6)?;
                 Ok(solution.pressure.iter().copied().fold(0.0, f64::max))
             };
-            let most = solve().map_err(|source| {
+            let most = solve().map_err(|error| {
                 let (waves, realisation) = (surface.waves, surface.realisation);
-                let source = Box::new(crate::contact::curve::CurveError::Solve(source));
-                StageError::Contact { waves, realisation, speed_mm_s, source }
+                error.in_stage(|source| {
+                    let source = Box::new(crate::contact::curve::CurveError::Solve(*source));
+                    StageError::Contact { waves, realisation, speed_mm_s, source }
+                })
             })?;
             let shortest = scales.micro[0].wavelength;
             let columns = crate::stages::micro::columns(

@@ -14,6 +14,7 @@ pub use scales::{ScaleForecast, ScaleModel};
 
 use crate::artifact::{ArtifactError, RunView};
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::numerics::Interrupt;
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Chain, Recipe, Violation, Work};
 use crate::rubber::Rubber;
@@ -24,7 +25,6 @@ use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Stage, StageError};
 use serde::Serialize;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// Bytes for a grid point of a contact, with its coarser grids and the vectors of the iteration, as
 /// measured on a solve of 2^20 points with its error estimate.
@@ -119,7 +119,7 @@ pub struct Forecast {
 pub fn forecast(
     recipe: &Recipe,
     threads: usize,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
 ) -> Result<Forecast, ForecastError> {
     let chain = match recipe.work()? {
         Work::Chain(chain) => chain,
@@ -138,7 +138,7 @@ pub fn forecast(
     stages.push(StageForecast { stage: Stage::Bem, seconds: Some(half_space) });
     let mut microscales = Vec::new();
     if let Some(parameters) = chain.micro {
-        microscales = micro::microscales(parameters, &trial, &curves)?;
+        microscales = micro::microscales(parameters, &trial, &curves, interrupted)?;
         let seconds = micro::seconds(&microscales, threads);
         stages.push(StageForecast { stage: Stage::Micro, seconds: Some(seconds) });
         // The macro surfaces under the local law: one contact, on a coarser grid, for each value of the
@@ -161,7 +161,7 @@ pub fn forecast(
 fn run_trial(
     recipe: &Recipe,
     folder: &Path,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
 ) -> Result<(Vec<StageForecast>, f64), ForecastError> {
     let trial = shortened(recipe);
     let (mut stages, mut bem_seconds) = (Vec::new(), 0.0);
@@ -279,7 +279,7 @@ fn computed(
     recipe: &Recipe,
     out: &Path,
     stage: Stage,
-    interrupted: &AtomicBool,
+    interrupted: &Interrupt,
 ) -> Result<f64, ForecastError> {
     let selection = Selection { only: Some(stage), ..Selection::default() };
     pipeline::run(recipe, out, selection, interrupted, &|_| ())?;

@@ -18,6 +18,7 @@ use super::layer::LayeredSpace;
 use crate::contact::half_space::HalfSpace;
 use crate::contact::preconditioner::{Preconditioner, SetOperator};
 use crate::contact::solution::displacement_scale;
+use crate::numerics::Interrupt;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
 const MOST_ITERATIONS: usize = 60;
@@ -42,6 +43,8 @@ pub(super) struct Newton<'a> {
     pub softening: f64,
     /// Displacement in m that stands for the whole load in the norm that has to fall.
     pub load_length: f64,
+    /// Ends the iteration early, without convergence.
+    pub interrupt: &'a Interrupt,
 }
 
 /// Where an iteration stands.
@@ -96,7 +99,7 @@ impl Newton<'_> {
         let mut krylov_iterations = 0;
         let mut iterations = 0;
         let mut tight = false;
-        while now.residual > tolerance && iterations < MOST_ITERATIONS {
+        while now.residual > tolerance && iterations < MOST_ITERATIONS && !self.interrupt.is_set() {
             iterations += 1;
             let step = self.step(&now, tight);
             krylov_iterations += step.krylov_iterations;
@@ -222,7 +225,7 @@ impl Newton<'_> {
             layered.displacement_on(&set, v, &mut displaced);
             preconditioner.apply(&mut layered, &set, &displaced, out);
         };
-        let report = gmres(operator, &mut correction, limits);
+        let report = gmres(operator, &mut correction, limits, self.interrupt);
         change.iter_mut().zip(&correction).for_each(|(a, b)| *a += b);
         self.complete(now, &set, &compliance, &change, report.iterations)
     }

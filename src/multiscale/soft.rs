@@ -9,6 +9,7 @@ use crate::contact::half_space::HalfSpace;
 use crate::contact::sliding::{
     COARSEST_POINTS, INNER_TOLERANCE, RESIDUAL_TOLERANCE, check, coarsen, remove_mean, resample,
 };
+use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use realfft::RealFftPlanner;
 
@@ -46,6 +47,7 @@ pub struct SoftContact {
     /// From the coarsest to the finest.
     grids: Vec<Grid>,
     slopes: Vec<f64>,
+    interrupt: Interrupt,
 }
 
 struct Grid {
@@ -78,7 +80,13 @@ impl SoftContact {
         let finest = &mut grids[0];
         let slopes = finest.space.slope(&finest.heights);
         grids.reverse();
-        Ok(Self { speed, law, grids, slopes })
+        Ok(Self { speed, law, grids, slopes, interrupt: Interrupt::default() })
+    }
+
+    /// With an interrupt that ends a solve between two Krylov iterations.
+    #[must_use]
+    pub fn interruptible(self, interrupt: &Interrupt) -> Self {
+        Self { interrupt: interrupt.clone(), ..self }
     }
 
     /// Number of points of the finest grid.
@@ -112,13 +120,16 @@ impl SoftContact {
         for level in 0..self.grids.len() {
             let tolerance =
                 if level + 1 == self.grids.len() { INNER_TOLERANCE } else { START_TOLERANCE };
-            let mut newton = self.grids[level].newton(&self.law, mean_pressure);
+            let mut newton = self.grids[level].newton(&self.law, mean_pressure, &self.interrupt);
             let n = newton.heights.len();
             let mut state = match coarser.take() {
                 Some((state, compliance)) => refine(&newton, &state, compliance),
                 None => flat_start(&newton),
             };
             let (outcome, softened) = solve_grid(&mut newton, &mut state, tolerance);
+            if self.interrupt.is_set() {
+                return Err(SoftContactError::Contact(ContactError::Interrupted));
+            }
             applications += (outcome.krylov_iterations * n) as f64 / points as f64;
             if n < points {
                 coarser = Some((state, newton.coordinate_compliance()));
@@ -187,7 +198,12 @@ impl Grid {
         Self { space, heights, kernel }
     }
 
-    fn newton<'a>(&'a mut self, law: &'a LocalLaw, mean_pressure: f64) -> Newton<'a> {
+    fn newton<'a>(
+        &'a mut self,
+        law: &'a LocalLaw,
+        mean_pressure: f64,
+        interrupt: &'a Interrupt,
+    ) -> Newton<'a> {
         Newton {
             space: &mut self.space,
             heights: &self.heights,
@@ -196,6 +212,7 @@ impl Grid {
             mean_pressure,
             softening: 0.0,
             load_length: 0.0,
+            interrupt,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Krylov solver for matrix-free, nonsymmetric systems.
 
+use super::Interrupt;
+
 /// How far a Krylov iteration goes.
 #[derive(Debug, Clone, Copy)]
 pub struct KrylovLimits {
@@ -26,11 +28,12 @@ const EXHAUSTED: f64 = 1e-13;
 /// Gram-Schmidt; Saad & Schultz 1986, doi:10.1137/0907058) and returns `y` in place of `r`.
 ///
 /// `B` is meant to be a preconditioned operator close to the identity: the basis is kept
-/// whole, so memory is `(iterations + 1) * r.len()`.
+/// whole, so memory is `(iterations + 1) * r.len()`. After an `interrupt` the best solution so far is returned.
 pub fn gmres(
     mut operator: impl FnMut(&[f64], &mut [f64]),
     residual: &mut [f64],
     limits: KrylovLimits,
+    interrupt: &Interrupt,
 ) -> KrylovReport {
     let n = residual.len();
     let norm = euclidean_norm(residual);
@@ -44,6 +47,9 @@ pub fn gmres(
     let mut rhs = vec![norm];
     // More basis vectors than unknowns cannot be independent.
     for k in 0..limits.max_iterations.min(n) {
+        if interrupt.is_set() {
+            break;
+        }
         let mut w = vec![0.0; n];
         operator(&basis[k], &mut w);
         let before = euclidean_norm(&w);

@@ -2,8 +2,11 @@
 
 pub mod bracket;
 pub mod interpolation;
+pub mod interrupt;
 pub mod krylov;
 pub mod statistics;
+
+pub use interrupt::Interrupt;
 
 /// Complex numbers of public functions, so that a user needs no version of their own.
 pub use rustfft::num_complex::Complex64;

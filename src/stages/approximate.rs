@@ -1,7 +1,7 @@
 //! approximate: amplitudes of superposed sines with the correlation of the scans.
 
 use super::characterise::{
-    AVERAGE, CORRELATION_FILE, CorrelationRow, RELIABLE_KEY, WINDOW_LENGTH_KEY,
+    AVERAGE, CORRELATION_FILE, CorrelationRow, RELIABLE_KEY, WINDOW_LENGTH_KEY, length_in,
 };
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
@@ -215,10 +215,10 @@ pub fn run(
         return write_given(parameters, context);
     }
     let (rows, metadata) = run.read_table::<CorrelationRow>("characterise", CORRELATION_FILE)?;
-    let window_length = metadata.get(WINDOW_LENGTH_KEY).and_then(|mm| mm.parse::<f64>().ok());
+    let window_length = length_in(&metadata, WINDOW_LENGTH_KEY)?;
     let reliable_mm = metadata.get(RELIABLE_KEY).cloned().unwrap_or_default();
     // The schema of the correlation has had it from revision 4 on.
-    let reliable = reliable_mm.parse::<f64>().unwrap_or(0.0) / 1e3;
+    let reliable = length_in(&metadata, RELIABLE_KEY)?.unwrap_or(0.0) / 1e3;
     let correlations = Correlations::of(rows, parameters.longest_lag_mm, window_length);
     let (mut scales, mut fits, mut fitted, mut warnings) = (vec![], vec![], vec![], vec![]);
     for &waves in &parameters.waves {

@@ -192,6 +192,17 @@ pub const WINDOW_LENGTH_KEY: &str = "window_length_mm";
 /// Metadata of [`CORRELATION_FILE`] and [`SPECTRUM_FILE`]: shortest wavelength in millimetres that the
 /// instrument and its spacing show as it is.
 pub const RELIABLE_KEY: &str = "shortest_reliable_wavelength_mm";
+
+/// A length in the metadata of a table; none if the table has none.
+///
+/// # Errors
+/// [`StageError::Metadata`] for a text that is not a number.
+pub fn length_in(metadata: &Metadata, key: &'static str) -> Result<Option<f64>, StageError> {
+    let text = metadata.get(key).filter(|text| !text.is_empty());
+    let number =
+        |text: &String| text.parse().map_err(|_| StageError::Metadata { key, value: text.clone() });
+    text.map(number).transpose()
+}
 /// What stands in the column `scan` for the average over all windows.
 pub const AVERAGE: &str = "average";
 

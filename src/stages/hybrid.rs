@@ -17,6 +17,7 @@ use crate::multiscale::scales::Scales;
 use crate::multiscale::{
     LawEnd, LawError, LocalLaw, SoftContact, SoftContactError, SoftContactSolution,
 };
+use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -194,7 +195,7 @@ pub fn run(
         .par_iter()
         .map(|surface| {
             context.check_interrupt()?;
-            one_surface(parameters, micro, rubber, surface, &data)
+            one_surface(parameters, micro, rubber, surface, &data, context.watch.interrupted)
         })
         .collect::<Result<_, StageError>>()?;
     let (rows, locals): (Vec<_>, Vec<_>) = results.into_iter().unzip();
@@ -227,6 +228,7 @@ fn one_surface(
     rubber: &Rubber,
     surface: &Surface,
     data: &Data,
+    interrupt: &Interrupt,
 ) -> Result<(Vec<HybridRow>, Vec<LocalRow>), StageError> {
     let scales = Scales::part(&surface.profile, micro.rms_slope_threshold);
     let curves: Vec<&CurveRow> = data
@@ -242,10 +244,9 @@ fn one_surface(
     let (mut rows, mut locals) = (Vec::new(), Vec::new());
     for at_one_speed in curves.chunk_by(|a, b| a.speed_mm_s == b.speed_mm_s) {
         let speed_mm_s = at_one_speed[0].speed_mm_s;
-        let failed = |source: SolveError| StageError::Microscale {
-            owners: format!("{} waves", surface.waves),
-            speed_mm_s,
-            source: Box::new(source),
+        let failed = |source: SolveError| {
+            let owners = format!("{} waves", surface.waves);
+            source.in_stage(|source| StageError::Microscale { owners, speed_mm_s, source })
         };
         let sampled = microscale(parameters, surface, speed_mm_s, data).map_err(failed)?;
         let Some((microscale, law)) = sampled else {
@@ -253,7 +254,8 @@ fn one_surface(
             continue;
         };
         let mut contact = SoftContact::new(rubber, speed_mm_s / 1e3, period, &heights, law)
-            .map_err(|error| failed(error.into()))?;
+            .map_err(|error| failed(error.into()))?
+            .interruptible(interrupt);
         for curve in at_one_speed {
             let solution = match contact.solve(curve.pressure_mpa * 1e6) {
                 Ok(solution) => solution,

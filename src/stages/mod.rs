@@ -26,8 +26,8 @@ pub mod tables;
 use crate::artifact::{ArtifactError, Pending, SchemaVersion};
 use crate::contact::ContactError;
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::numerics::Interrupt;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The stages in the order of the data.
 #[derive(
@@ -118,7 +118,7 @@ pub struct Watch<'a> {
     /// Called as work is done: pieces done, pieces known so far.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
     /// Set by the user's interrupt.
-    pub interrupted: &'a AtomicBool,
+    pub interrupted: &'a Interrupt,
 }
 
 impl Watch<'_> {
@@ -127,7 +127,7 @@ impl Watch<'_> {
     /// # Errors
     /// [`StageError::Interrupted`].
     pub fn check_interrupt(&self) -> Result<(), StageError> {
-        if self.interrupted.load(Ordering::Relaxed) {
+        if self.interrupted.is_set() {
             return Err(StageError::Interrupted);
         }
         Ok(())
@@ -227,6 +227,16 @@ pub enum StageError {
         other_points: usize,
         /// Its spacing in µm.
         other_spacing_um: f64,
+    },
+    /// Metadata of a table that are not a number.
+    #[error(
+        "{key} of a table of characterise is `{value}`, which is not a number: run with --force characterise"
+    )]
+    Metadata {
+        /// Its key.
+        key: &'static str,
+        /// Its value.
+        value: String,
     },
     /// Roughness parameters.
     #[error(transparent)]
@@ -351,6 +361,8 @@ pub enum StageError {
 impl HasKind for StageError {
     fn kind(&self) -> ErrorKind {
         match self {
+            // A table of an earlier stage that is not as it was written.
+            Self::Metadata { .. } => ErrorKind::Input,
             Self::Artifact(source) => source.kind(),
             Self::Scan(source) => source.kind(),
             Self::File(source) => source.kind(),
@@ -437,6 +449,37 @@ impl HasKind for SolveError {
             Self::Accuracy { .. } | Self::Unresolved { .. } => ErrorKind::Failure,
             Self::Artifact(source) => source.kind(),
             Self::Interrupted => ErrorKind::Interrupted,
+        }
+    }
+}
+
+impl SolveError {
+    /// Whether there is no solution to be found, as opposed to a solve that was interrupted, asked for
+    /// the impossible, or could not be read or kept.
+    pub fn is_no_solution(&self) -> bool {
+        match self {
+            Self::Contact(error) => error.is_no_solution(),
+            Self::FiniteDeformation(error) => error.is_no_solution(),
+            Self::SoftContact(error) => {
+                matches!(error, crate::multiscale::SoftContactError::NotConverged { .. })
+            }
+            Self::Accuracy { .. } | Self::Unresolved { .. } => true,
+            Self::Law(_) | Self::Artifact(_) | Self::Interrupted => false,
+        }
+    }
+
+    /// Whether the user interrupted.
+    pub fn is_interrupt(&self) -> bool {
+        self.kind() == ErrorKind::Interrupted
+    }
+
+    /// The error of the stage: an interrupt and a failed store are that in every stage, for the rest
+    /// `contact` says whose contact it is.
+    pub fn in_stage(self, contact: impl FnOnce(Box<Self>) -> StageError) -> StageError {
+        match self {
+            Self::Artifact(error) => error.into(),
+            error if error.is_interrupt() => StageError::Interrupted,
+            error => contact(Box::new(error)),
         }
     }
 }

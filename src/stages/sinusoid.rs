@@ -270,10 +270,11 @@ fn solve_all(
     (context.watch.progress)(0, total);
     let solve = |problem: &problem::Problem| {
         context.check_interrupt()?;
-        let outcomes = problem.outcomes(rubber, store).map_err(|source| StageError::Solve {
-            problem: problem.to_string(),
-            source: Box::new(source),
-        })?;
+        let outcomes =
+            problem.outcomes(rubber, store, context.watch.interrupted).map_err(|error| {
+                let problem = problem.to_string();
+                error.in_stage(|source| StageError::Solve { problem, source })
+            })?;
         (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
         Ok::<_, StageError>(outcomes)
     };

@@ -6,7 +6,7 @@ mod theories;
 
 use super::approximate::{ScaleRow, WAVES_FILE};
 use super::bem::{CURVES_FILE, CurveRow};
-use super::characterise::RELIABLE_KEY;
+use super::characterise::{RELIABLE_KEY, length_in};
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
 use super::{Context, StageError, schema_of};
@@ -290,7 +290,7 @@ pub fn run(
         context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
     }
     let (_, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
-    let reliable = metadata.get(RELIABLE_KEY).and_then(|mm| mm.parse::<f64>().ok());
+    let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;

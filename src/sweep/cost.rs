@@ -83,11 +83,9 @@ impl<'a> Costs<'a> {
                 let start = Instant::now();
                 match task.solve(&solvers.bem, rubber, store, watch) {
                     Ok(rows) => Ok(Some((rows, start.elapsed().as_secs_f64(), there))),
-                    Err(error @ (StageError::Interrupted | StageError::Artifact(_))) => {
-                        Err(error.into())
-                    }
                     // The shard that gets it says so.
-                    Err(_) => Ok(None),
+                    Err(StageError::Contact { .. }) => Ok(None),
+                    Err(error) => Err(error.into()),
                 }
             })
             .collect::<Result<_, SweepError>>()?;

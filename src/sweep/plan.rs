@@ -272,6 +272,7 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
         Ok(()) => drop(folder.keep()),
         // Another process has made it.
         Err(_) if is_whole(&place.join(PLAN_FILE)) => {}
+        Err(error) if !is_occupied(&error) => return Err(failed(&place)(error)),
         // What is damaged gives way to what is not, file by file.
         Err(_) => {
             layout.check_links(&place)?;
@@ -282,6 +283,12 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
         }
     }
     Ok(place.join(PLAN_FILE))
+}
+
+/// Whether a folder was not renamed because of what is in its place.
+fn is_occupied(error: &std::io::Error) -> bool {
+    use std::io::ErrorKind::{AlreadyExists, DirectoryNotEmpty, NotADirectory};
+    [AlreadyExists, DirectoryNotEmpty, NotADirectory].contains(&error.kind())
 }
 
 /// Whether the plan and all its lists are as they were written.

@@ -1,4 +1,4 @@
-//! Nothing is ever lost or half-true: kills, full and read-only disks, damaged and foreign files, clocks, edits
+//! Nothing is ever lost or half-true: kills, interrupts, failing system calls, full and read-only disks, damaged and foreign files, clocks, edits
 //! during a run, many scans and large ones, each done to the real binary.
 
 #[path = "../common/mod.rs"]
@@ -8,10 +8,13 @@ mod digests;
 #[path = "../common/outcome.rs"]
 mod outcome;
 
+mod arrays;
+mod calls;
 mod changes;
 mod damage;
 mod disk;
 mod foreign;
+mod interrupts;
 mod kills;
 mod mixed;
 mod sizes;

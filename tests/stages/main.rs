@@ -22,13 +22,13 @@ mod sinusoid;
 mod theories;
 mod waves;
 
+use asperity::numerics::Interrupt;
 use asperity::pipeline::{self, PipelineError, Selection, State};
 use asperity::recipe::Recipe;
 use asperity::stages::Stage;
 use common::Campaign;
 use digests::digests;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// The stages of the small campaign, which is solved on the half-space alone.
 const STAGES: [Stage; 6] = [
@@ -47,7 +47,7 @@ fn recipe(campaign: &Campaign) -> Recipe {
 /// Runs what the selection asks for and returns the stages that were computed.
 fn try_run(recipe: &Recipe, out: &Path, selection: Selection) -> Result<Vec<Stage>, PipelineError> {
     let computed = std::sync::Mutex::new(Vec::new());
-    pipeline::run(recipe, out, selection, &AtomicBool::new(false), &|event| {
+    pipeline::run(recipe, out, selection, &Interrupt::default(), &|event| {
         if let pipeline::Event::Finished(stage, _) = event {
             computed.lock().unwrap().push(stage);
         }

@@ -2,6 +2,7 @@
 
 use super::Campaign;
 use asperity::artifact::{Identity, Manifest, Metadata, Pending, RunFolder};
+use asperity::numerics::Interrupt;
 use asperity::stages::approximate::{self, Approximate, FITS_FILE, FitRow, ScaleRow, WAVES_FILE};
 use asperity::stages::characterise::{
     AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY,
@@ -13,7 +14,6 @@ use asperity::surface::ladder::Undetermined;
 use asperity::surface::realisation::random_phases;
 use serde_json::json;
 use std::f64::consts::PI;
-use std::sync::atomic::AtomicBool;
 
 const SPACING_MM: f64 = 0.025;
 const WINDOW_POINTS: usize = 400;
@@ -35,7 +35,7 @@ fn commit<T>(
     stage: &str,
     compute: impl FnOnce(&mut Context) -> Result<T, StageError>,
 ) -> Result<T, StageError> {
-    let interrupted = AtomicBool::new(false);
+    let interrupted = Interrupt::default();
     let pending: Pending = folder.begin(stage)?;
     let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
     let mut context = Context { pending, watch };

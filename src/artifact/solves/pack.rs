@@ -69,6 +69,20 @@ impl Pack {
         }
     }
 
+    /// The pack at a path; none if there is none, or a damaged one. One that cannot be read may be whole:
+    /// to take it for absent would overwrite what others have solved.
+    fn find(path: &Path) -> Result<Option<Self>, ArtifactError> {
+        match Self::read(path) {
+            Ok(pack) => Ok(Some(pack)),
+            Err(ArtifactError::Io { cause, action, path })
+                if cause.kind() != io::ErrorKind::NotFound =>
+            {
+                Err(ArtifactError::Io { action, path, cause })
+            }
+            Err(_) => Ok(None),
+        }
+    }
+
     fn read(path: &Path) -> Result<Self, ArtifactError> {
         #[derive(Deserialize)]
         struct Header {
@@ -108,17 +122,13 @@ impl SolveStore {
     /// # Errors
     /// [`ArtifactError::Io`] if its pack exists and cannot be read.
     pub fn problem(&self, problem: &Digest) -> Result<Solves<'_>, ArtifactError> {
-        let ours = |pack: &Pack| !self.packed || pack.tool_version == TOOL_VERSION;
-        let pack = match Pack::read(&self.pack_path(problem)) {
-            _ if self.anew.is_some() => Pack::empty(*problem),
-            Ok(pack) if pack.problem == *problem && ours(&pack) => pack,
-            Err(ArtifactError::Io { cause, action, path })
-                if cause.kind() != io::ErrorKind::NotFound =>
-            {
-                return Err(ArtifactError::Io { action, path, cause });
-            }
-            _ => Pack::empty(*problem),
+        let ours = |pack: &Pack| {
+            self.anew.is_none()
+                && pack.problem == *problem
+                && (!self.packed || pack.tool_version == TOOL_VERSION)
         };
+        let there = Pack::find(&self.pack_path(problem))?.filter(ours);
+        let pack = there.unwrap_or_else(|| Pack::empty(*problem));
         Ok(Solves { store: self, pack, saved: Instant::now(), changed: false })
     }
 
@@ -197,7 +207,8 @@ impl Solves<'_> {
     /// Writes the pack with what another process has put there since it was read: a second copy of a shard that
     /// is behind must not undo what the first has finished.
     fn save(&mut self) -> Result<(), ArtifactError> {
-        if let Ok(there) = Pack::read(&self.store.pack_path(&self.pack.problem))
+        let there = Pack::find(&self.store.pack_path(&self.pack.problem))?;
+        if let Some(there) = there
             && there.problem == self.pack.problem
             && there.tool_version == TOOL_VERSION
         {

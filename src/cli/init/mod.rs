@@ -84,7 +84,15 @@ impl Init {
     /// [`CliError::Input`] for a folder that has something in it, or scans that cannot be read.
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         let folder = &self.folder;
-        if fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) {
+        let occupied = match fs::read_dir(folder) {
+            Ok(mut entries) => entries.next().is_some(),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => false,
+            Err(error) => {
+                let folder = folder.display();
+                return Err(CliError::input(format!("cannot look into {folder}: {error}")));
+            }
+        };
+        if occupied {
             return Err(CliError::input(format!(
                 "{} is not empty: give a new folder",
                 folder.display()
@@ -192,14 +200,18 @@ fn from_scan(file: &Path) -> Result<FromScan, CliError> {
     let section =
         format!("# Proposed from {name}: check it against the file.\n{}", shape.recipe_section());
     let format = shape.format();
-    let scan = format.as_ref().ok().and_then(|format| parse_text(&name, &bytes, format).ok());
-    let notes = format.err().map(|keys| {
-        format!(
-            "{name} does not state {}: units are never guessed, set them in [ingest.text]",
-            keys.join(", ")
-        )
-    });
-    Ok(ladder(scan, section, notes.into_iter().collect()))
+    let (scan, note) = match format.map(|format| parse_text(&name, &bytes, &format)) {
+        Ok(Ok(scan)) => (Some(scan), None),
+        Ok(Err(error)) => (None, Some(format!("{error}; correct [ingest.text]"))),
+        Err(keys) => {
+            let keys = keys.join(", ");
+            let note = format!(
+                "{name} does not state {keys}: units are never guessed, set them in [ingest.text]"
+            );
+            (None, Some(note))
+        }
+    };
+    Ok(ladder(scan, section, note.into_iter().collect()))
 }
 
 /// The ladder of waves between what the spacing of a scan resolves and half its length.

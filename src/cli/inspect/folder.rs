@@ -44,10 +44,11 @@ pub(super) fn read(path: &Path) -> Result<Finding, CliError> {
     if path.join(Manifest::FILE).exists() {
         return Ok(Finding::Stage(Stage::read(path)?));
     }
-    let entries = std::fs::read_dir(path)
-        .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
+    let unreadable = |error| CliError::input(format!("cannot read {}: {error}", path.display()));
+    let entries = std::fs::read_dir(path).map_err(unreadable)?;
+    let entries: Vec<_> = entries.collect::<Result<_, _>>().map_err(unreadable)?;
     let mut folders: Vec<PathBuf> = entries
-        .flatten()
+        .into_iter()
         // What a killed run left behind starts with a point.
         .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
         .map(|entry| entry.path())

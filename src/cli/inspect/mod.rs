@@ -1,6 +1,7 @@
 //! `asperity inspect`: what is in a file or folder.
 
 mod artifact;
+mod child;
 mod folder;
 mod instrument;
 mod provenance;
@@ -54,6 +55,9 @@ pub(super) struct Inspect {
     /// Channel of an ERD file that is read, by its number from 1; the first of heights if not given.
     #[arg(long, value_name = "N", value_parser = super::values::channel)]
     erd_channel: Option<usize>,
+    /// Read a file of arrays here: for the process that `inspect` starts for it.
+    #[arg(long, hide = true)]
+    in_this_process: bool,
     #[command(flatten)]
     scan: ScanOptions,
 }
@@ -79,8 +83,22 @@ enum Finding {
 
 impl Inspect {
     pub(super) fn run(&self) -> Result<(), CliError> {
+        if !self.in_this_process && self.is_hdf5()? {
+            self.scan.refuse(&self.path, "a file of arrays")?;
+            return print(&child::inspect(&self.path, self.json)?);
+        }
         let finding = self.find()?;
         print(&if self.json { json(&finding)? } else { finding.text() })
+    }
+
+    fn is_hdf5(&self) -> Result<bool, CliError> {
+        Ok(!self.path.is_dir() && Format::of(&self.start()?) == Format::Hdf5)
+    }
+
+    fn start(&self) -> Result<Vec<u8>, CliError> {
+        let path = &self.path;
+        first_bytes(path)
+            .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))
     }
 
     fn find(&self) -> Result<Finding, CliError> {
@@ -90,9 +108,7 @@ impl Inspect {
             refuse_channel(path, self.erd_channel, None)?;
             return folder::read(path);
         }
-        let start = crate::files::admit(path, u64::MAX)
-            .and_then(|()| first_bytes(path))
-            .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
+        let start = self.start()?;
         let format = Format::of(&start);
         refuse_channel(path, self.erd_channel, Family::detect(&start))?;
         if let Some(what) = format.not_text() {

@@ -15,8 +15,10 @@ pub(super) enum State {
     Intact,
     /// Changed or damaged since.
     Changed,
-    /// Not there or not readable.
+    /// Not there.
     Missing,
+    /// There, and not readable.
+    Unreadable,
 }
 
 impl State {
@@ -24,6 +26,7 @@ impl State {
         match Digest::of_file(&folder.join(&output.file)) {
             Ok(digest) if digest == output.bytes_digest => Self::Intact,
             Ok(_) => Self::Changed,
+            Err(_) if folder.join(&output.file).exists() => Self::Unreadable,
             Err(_) => Self::Missing,
         }
     }
@@ -33,6 +36,7 @@ impl State {
             Self::Intact => "intact",
             Self::Changed => "CHANGED since it was written",
             Self::Missing => "MISSING",
+            Self::Unreadable => "UNREADABLE",
         }
     }
 }

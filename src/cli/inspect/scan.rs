@@ -136,7 +136,7 @@ impl ScanOptions {
             foreign(path, &problem)
         })?;
         let scan = read_text(path, &format)?;
-        let shape = read_bytes(path).ok().and_then(|bytes| TextShape::of(&bytes));
+        let shape = TextShape::of(&read_bytes(path).map_err(CliError::input)?);
         let contradictions = shape.map(|shape| shape.contradictions(&format)).unwrap_or_default();
         Ok(Scan { contradictions, ..Scan::of(path, scan) })
     }

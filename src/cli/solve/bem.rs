@@ -155,7 +155,8 @@ impl Bem {
         let given =
             self.shape.points.or(self.shape.profile.is_some().then_some(shape.heights.len()));
         if let Some(points) = given {
-            return on_grid(points, *POINTS_RANGE.start(), solve, view);
+            let no_solution = |error: &CliError| matches!(error, CliError::Failure(_));
+            return on_grid(points, *POINTS_RANGE.start(), solve, no_solution, view);
         }
         let watched =
             if rubber.branches.is_empty() { Watched::ContactArea } else { Watched::Friction };

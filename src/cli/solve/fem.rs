@@ -12,7 +12,7 @@ use super::resolution;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{json, note, print, refuse_existing, write_file};
 use crate::cli::progress::Spinner;
-use crate::cli::{CliError, values};
+use crate::cli::{CliError, threads, values};
 use crate::contact::SlidingContact;
 use crate::contact::refine::{OnGrid, RefineError, Refinement, Watched, on_grid};
 use crate::error_kind::HasKind;
@@ -142,6 +142,7 @@ impl From<Rule> for FlowRule {
 impl Fem {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         self.check()?;
+        threads::start(None)?;
         let material = self.material.material_at_finite_deformation()?;
         let rubber = material.rubber();
         let shape = self.shape.build()?;
@@ -238,7 +239,10 @@ impl Fem {
             solution
         };
         let refined = match self.tolerance {
-            None => on_grid(options.columns, least, solve, view)?,
+            None => {
+                let no_solution = |error: &CliError| matches!(error, CliError::Failure(_));
+                on_grid(options.columns, least, solve, no_solution, view)?
+            }
             Some(tolerance) => {
                 let watched = match rubber.branches.is_empty() {
                     true => Watched::ContactArea,
@@ -345,7 +349,7 @@ impl Fem {
 /// The error with the options that may help.
 fn with_advice(of: &str, error: FemError) -> CliError {
     let advice = match &error {
-        FemError::Rubber(_) | FemError::OutOfRange { .. } => "",
+        FemError::Rubber(_) | FemError::OutOfRange { .. } | FemError::Interrupted => "",
         FemError::PathEnded { reached: PathEnd::NotStarted, .. } => "; try other --columns",
         FemError::PathEnded { reached: PathEnd::At { .. }, .. } => {
             "; try other --columns, or a pressure below that"

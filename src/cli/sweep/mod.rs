@@ -10,11 +10,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
-use super::CliError;
 use super::interrupt::Interrupt;
 use super::last_run::LastRun;
 use super::output::note;
 use super::progress::Bar;
+use super::{CliError, threads};
 use crate::pipeline::Event;
 use crate::recipe::{Case, Recipe};
 use crate::stages::Watch;
@@ -122,17 +122,8 @@ pub(super) fn note_recipes(layout: &Layout, cases: &[Case]) -> Result<(), CliErr
 
 /// Sets the number of threads: what was asked for, or what the scheduler gives this process.
 fn set_threads(asked: Option<usize>) -> Result<usize, CliError> {
-    if asked == Some(0) {
-        return Err(CliError::input("--threads is 0: give at least 1"));
-    }
     let given = given_cores(|name| std::env::var(name).ok());
-    if let Some(threads) = asked.or(given) {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global()
-            .map_err(CliError::failure)?;
-    }
-    Ok(rayon::current_num_threads())
+    threads::start(threads::checked(asked)?.or(given.map(|cores| cores.min(threads::MOST))))
 }
 
 /// Cores that a scheduler gives this process: Slurm says their number, HyperQueue lists them.

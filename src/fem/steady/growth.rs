@@ -127,7 +127,7 @@ mod tests {
     fn setting() -> Setting {
         let rubber = Rubber::table_2_1();
         let finite = FiniteStrainRubber::new(&rubber, Rheology::NeoHookean).unwrap();
-        Setting { rubber, finite, speed: 0.01 }
+        Setting { rubber, finite, speed: 0.01, interrupt: Default::default() }
     }
 
     #[test]

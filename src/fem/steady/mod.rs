@@ -25,6 +25,7 @@ mod transfer;
 use super::error::{FemError, PathEnd};
 use super::mesh::{Grading, Mesh};
 use super::profile::RigidProfile;
+use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
 use newton::Stuck;
 use path::{Path, Scene};
@@ -140,6 +141,7 @@ struct Setting {
     finite: FiniteStrainRubber,
     /// Speed in m/s.
     speed: f64,
+    interrupt: Interrupt,
 }
 
 impl Setting {
@@ -154,6 +156,7 @@ impl Setting {
             relaxation_lengths: branches
                 .map(|branch| self.speed * branch.relaxation_time)
                 .collect(),
+            interrupt: self.interrupt.clone(),
             heights: Heights::of(&profile, 8 * columns),
             first_pressure: FIRST_PRESSURE * modulus(TAU * waves / period) / waves,
             stiff_modulus: modulus(PI * columns as f64 / period),
@@ -178,17 +181,35 @@ impl SteadyContact {
         let finite = FiniteStrainRubber::new(rubber, rheology)?;
         check_speed(speed)?;
         options.check(profile.period())?;
-        let setting = Setting { rubber: rubber.clone(), finite, speed };
+        let interrupt = Interrupt::default();
+        let setting = Setting { rubber: rubber.clone(), finite, speed, interrupt };
         let scene = Arc::new(setting.scene(profile, options.columns));
         Ok(Self { setting, scene, options, path: None })
+    }
+
+    /// With an interrupt that ends a solve between two Krylov iterations.
+    #[must_use]
+    pub fn interruptible(self, interrupt: &Interrupt) -> Self {
+        let scene = Scene { interrupt: interrupt.clone(), ..(*self.scene).clone() };
+        let setting = Setting { interrupt: interrupt.clone(), ..self.setting };
+        Self { setting, scene: Arc::new(scene), ..self }
     }
 
     /// The contact at the mean pressure `p` in Pa.
     ///
     /// # Errors
     /// [`FemError::OutOfRange`] for a pressure that is not positive and finite;
-    /// [`FemError::PathEnded`] with the last point that converged.
+    /// [`FemError::PathEnded`] with the last point that converged; [`FemError::Interrupted`].
     pub fn solve(&mut self, pressure: f64) -> Result<SteadySolution, FemError> {
+        let solved = self.solve_on_a_path(pressure);
+        // Behind an interrupt every path ends.
+        if solved.is_err() && self.setting.interrupt.is_set() {
+            return Err(FemError::Interrupted);
+        }
+        solved
+    }
+
+    fn solve_on_a_path(&mut self, pressure: f64) -> Result<SteadySolution, FemError> {
         if !(pressure > 0.0 && pressure.is_finite()) {
             return Err(FemError::OutOfRange {
                 quantity: "the mean pressure in Pa",
@@ -248,6 +269,9 @@ impl SteadyContact {
         let mut path: Option<Path> = None;
         let mut arrived = Err(Stuck);
         for mesh in self.meshes() {
+            if self.setting.interrupt.is_set() {
+                return None;
+            }
             let entered = match &mut path {
                 Some(path) => path.refine(&mesh),
                 None => Err(Stuck),
@@ -319,4 +343,31 @@ fn check_speed(speed: f64) -> Result<(), FemError> {
     }
     let (quantity, range) = ("the speed in m/s", "positive and finite");
     Err(FemError::OutOfRange { quantity, value: speed, range })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::Wave;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn an_interrupt_ends_a_solve_and_is_no_end_of_a_path() {
+        let wave = Wave { wavelength: 6.25e-5, amplitude: 1.867e-5, phase: 0.0 };
+        let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
+        let (rubber, law) = (Rubber::table_2_1(), Rheology::NeoHookean);
+        let interrupt = Interrupt::default();
+        let mut contact = SteadyContact::new(&rubber, law, 0.01, profile, BlockOptions::new(1024))
+            .unwrap()
+            .interruptible(&interrupt);
+        let user = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(500));
+            interrupt.set();
+            Instant::now()
+        });
+        assert_eq!(contact.solve(3e6).err(), Some(FemError::Interrupted));
+        let heard = user.join().unwrap().elapsed();
+        assert!(heard < Duration::from_secs(10), "{heard:?}");
+        assert_eq!(contact.solve(3e5).err(), Some(FemError::Interrupted));
+    }
 }

@@ -17,6 +17,7 @@ use super::super::memory::{Memory, MemoryContact};
 use super::super::profile::{Height, RigidProfile};
 use super::super::unknowns::Unknowns;
 use super::state::{Heights, State};
+use crate::numerics::Interrupt;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
 /// The law between force and gap of a contact node.
@@ -70,6 +71,8 @@ pub(super) struct Problem<'a> {
     pub pressure: f64,
     /// Stiffness in Pa of the surface against the shortest waves; scales the contact stiffness.
     pub modulus: f64,
+    /// Ends the iteration early, as stuck.
+    pub interrupt: &'a Interrupt,
 }
 
 /// Unbalanced forces and gaps at a state.
@@ -132,7 +135,7 @@ impl Problem<'_> {
         };
         let mut active: Option<Vec<bool>> = None;
         for step in 0..goal.most_steps {
-            if imbalance.norm > goal.highest {
+            if imbalance.norm > goal.highest || self.interrupt.is_set() {
                 return Err(Stuck);
             }
             let nodes = self.node_laws(state, &imbalance, law);
@@ -302,7 +305,7 @@ impl Problem<'_> {
             out.copy_from_slice(&unknowns.reduce(&forces, mean));
             out[unknowns.own()] *= self.modulus;
         };
-        let report = gmres(operator, &mut right, limits);
+        let report = gmres(operator, &mut right, limits, self.interrupt);
         right[unknowns.own()] /= self.modulus;
         precondition(&memory, &local, &mut right);
         let finite = right.iter().all(|x| x.is_finite());

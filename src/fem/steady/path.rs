@@ -16,6 +16,7 @@ use super::newton::{Complementarity, Cost, Goal, Level, Problem, Stuck};
 use super::state::{Heights, State};
 use super::transfer::transfer;
 use crate::fem::block::Block;
+use crate::numerics::Interrupt;
 use crate::rubber::FiniteStrainRubber;
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ pub(super) struct Scene {
     pub relaxation_lengths: Vec<f64>,
     pub profile: RigidProfile,
     pub heights: Heights,
+    pub interrupt: Interrupt,
     /// A mean pressure in Pa at which only the tips of some of the shortest waves are touched.
     pub first_pressure: f64,
     /// Modulus in Pa at the shortest wave of the mesh.
@@ -353,6 +355,7 @@ impl Path {
             heights: self.scene.heights,
             pressure,
             modulus: self.scene.stiff_modulus,
+            interrupt: &self.scene.interrupt,
         }
     }
 

@@ -8,6 +8,7 @@ use crate::contact::refine::{
 };
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
+use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use crate::stages::SolveError;
 use crate::stages::realise::Surface;
@@ -15,7 +16,6 @@ use crate::surface::wave;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Revision of the contact solver: part of the key of every stored solve. To be raised when the
@@ -42,7 +42,7 @@ pub(super) struct Curve<'a> {
     first_points: usize,
     period: f64,
     stored: Solves<'a>,
-    interrupted: &'a AtomicBool,
+    interrupted: &'a Interrupt,
     /// Contacts by their number of grid points, set up when first needed.
     contacts: BTreeMap<usize, SlidingContact>,
     solves: Vec<SolveRow>,
@@ -63,7 +63,7 @@ impl<'a> Curve<'a> {
         surface: &'a Surface,
         speed_mm_s: f64,
         store: &'a SolveStore,
-        interrupted: &'a AtomicBool,
+        interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
         Ok(Self {
             rubber,
@@ -153,7 +153,13 @@ impl<'a> Curve<'a> {
             None => {
                 let points = self.sufficient_points(pressure)?;
                 let least = *POINTS_RANGE.start();
-                on_grid(points, least, |points| self.solve(pressure, points), on_its_grid)?
+                on_grid(
+                    points,
+                    least,
+                    |points| self.solve(pressure, points),
+                    SolveError::is_no_solution,
+                    on_its_grid,
+                )?
             }
         };
         let discretisation_error = refined.error.map(|error| error.friction_coefficient);
@@ -186,7 +192,7 @@ impl<'a> Curve<'a> {
 
     /// One solve, from the store if it is there.
     fn solve(&mut self, pressure: f64, points: usize) -> Result<SolveRow, SolveError> {
-        if self.interrupted.load(Ordering::Relaxed) {
+        if self.interrupted.is_set() {
             return Err(SolveError::Interrupted);
         }
         let key = self.key(pressure, points);
@@ -234,7 +240,10 @@ impl<'a> Curve<'a> {
                 }
                 let heights = wave::sample(&self.surface.profile, self.period, points);
                 let speed = self.speed_mm_s / 1e3;
-                Ok(place.insert(SlidingContact::new(self.rubber, speed, self.period, &heights)?))
+                Ok(place.insert(
+                    SlidingContact::new(self.rubber, speed, self.period, &heights)?
+                        .interruptible(self.interrupted),
+                ))
             }
         }
     }

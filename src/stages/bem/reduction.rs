@@ -42,26 +42,27 @@ impl LeftOut {
     }
 
     /// Tries longest and shortest waves of the `surfaces`, whose curves with all waves are `full`; `solve`
-    /// makes the curve of a surface. A curve that is not to be had is no reason to stop: the
-    /// wave then stays.
+    /// makes the curve of a surface. If there is none, the wave stays.
+    ///
+    /// # Errors
+    /// Those of `solve`.
     pub fn find<E>(
         rubber: &Rubber,
         surfaces: &[Surface],
         full: &[&[CurveRow]],
         tolerance: f64,
-        mut solve: impl FnMut(&Surface) -> Result<Vec<CurveRow>, E>,
-    ) -> Self {
+        mut solve: impl FnMut(&Surface) -> Result<Option<Vec<CurveRow>>, E>,
+    ) -> Result<Self, E> {
         let mut found = Self::default();
         for grow in [Self::without_longest, Self::without_shortest] {
             while let Some(candidate) = surfaces.first().and_then(|surface| grow(&found, surface)) {
                 let solve = &mut solve;
-                let Some(errors) = candidate.bound(rubber, surfaces, full, tolerance, solve) else {
-                    break;
-                };
+                let bound = candidate.bound(rubber, surfaces, full, tolerance, solve)?;
+                let Some(errors) = bound else { break };
                 found = Self { errors, ..candidate };
             }
         }
-        found
+        Ok(found)
     }
 
     /// The surface without them.
@@ -132,21 +133,21 @@ impl LeftOut {
         surfaces: &[Surface],
         full: &[&[CurveRow]],
         tolerance: f64,
-        solve: &mut impl FnMut(&Surface) -> Result<Vec<CurveRow>, E>,
-    ) -> Option<Vec<f64>> {
-        let areas = full.first()?.len();
+        solve: &mut impl FnMut(&Surface) -> Result<Option<Vec<CurveRow>>, E>,
+    ) -> Result<Option<Vec<f64>>, E> {
+        let Some(areas) = full.first().map(|curve| curve.len()) else { return Ok(None) };
         let mean = |k: usize| {
             full.iter().map(|curve| curve[k].friction_coefficient).sum::<f64>() / full.len() as f64
         };
         let most: Vec<f64> = (0..areas).map(|k| SHARE * tolerance * mean(k).abs()).collect();
         let mut differences = vec![Vec::new(); areas];
         for (surface, full) in surfaces.iter().zip(full) {
-            let mut curve = solve(&self.reduce(surface)).ok()?;
+            let Some(mut curve) = solve(&self.reduce(surface))? else { return Ok(None) };
             self.complete(rubber, surface, &mut curve);
             for (k, (reduced, full)) in curve.iter().zip(*full).enumerate() {
                 let difference = reduced.friction_coefficient - full.friction_coefficient;
                 if difference.abs() > HOPELESS * most[k] {
-                    return None;
+                    return Ok(None);
                 }
                 differences[k].push(difference);
             }
@@ -154,6 +155,6 @@ impl LeftOut {
         let estimates = differences.iter().map(|differences| MeanEstimate::of(differences));
         let errors: Vec<f64> = estimates.map(|e| e.mean.abs() + e.confidence_95).collect();
         // Not a number, of one realisation, is too much.
-        errors.iter().zip(&most).all(|(error, most)| error <= most).then_some(errors)
+        Ok(errors.iter().zip(&most).all(|(error, most)| error <= most).then_some(errors))
     }
 }

@@ -6,6 +6,7 @@ use super::reduction::LeftOut;
 use super::{Bem, CurveRow, Task};
 use crate::artifact::SolveStore;
 use crate::contact::CurveValue;
+use crate::contact::curve::CurveError;
 use crate::rubber::Rubber;
 use crate::stages::realise::Surface;
 use crate::stages::{StageError, Watch};
@@ -117,10 +118,14 @@ impl<'a> Work<'a> {
         let full: Vec<&[CurveRow]> =
             family.results.iter().map(|result| &result.values[..]).collect();
         let surfaces = &family.surfaces[..solved];
-        let left_out = LeftOut::find(self.rubber, surfaces, &full, tolerance, |surface| {
-            self.one_curve(surface, family.speed_mm_s).map(|result| result.values)
-        });
-        self.watch.check_interrupt()?;
+        let left_out =
+            LeftOut::find(self.rubber, surfaces, &full, tolerance, |surface| {
+                match self.one_curve(surface, family.speed_mm_s) {
+                    Ok(result) => Ok(Some(result.values)),
+                    Err(StageError::Contact { .. }) => Ok(None),
+                    Err(error) => Err(error),
+                }
+            })?;
         if left_out != LeftOut::default() {
             (family.left_out, family.with_all_waves) = (left_out, solved);
         }
@@ -132,11 +137,14 @@ impl<'a> Work<'a> {
         let mut curve =
             Curve::new(parameters, rubber, surface, speed_mm_s, store, watch.interrupted)?;
         let (values, fields) = curve.compute(parameters).map_err(|source| {
-            if watch.check_interrupt().is_err() {
-                return StageError::Interrupted;
-            }
             let (waves, realisation) = (surface.waves, surface.realisation);
-            StageError::Contact { waves, realisation, speed_mm_s, source: Box::new(source) }
+            let contact = |source| StageError::Contact { waves, realisation, speed_mm_s, source };
+            match source {
+                CurveError::Solve(error) => {
+                    error.in_stage(|error| contact(Box::new(CurveError::Solve(*error))))
+                }
+                source => contact(Box::new(source)),
+            }
         })?;
         curve.finish(&Task::key_of(parameters, rubber, surface, speed_mm_s))?;
         let row = |value: &CurveValue| CurveRow {

@@ -1,7 +1,7 @@
 //! The spectrum and what follows from it: bins, the isotropic spectrum, Hurst exponents, the check
 //! against the correlation.
 
-use super::{AVERAGE, Characterise, SelfAffineRow, finite};
+use super::{AVERAGE, Characterise, SelfAffineRow, finite, warnings};
 use crate::artifact::{Metadata, Row};
 use crate::surface::spectrum::{
     Agreement, PowerSpectrum, Route, SpectrumBin, abel_inverse, agreement, fit_hurst_exponent,
@@ -239,13 +239,22 @@ pub(super) fn hurst_rows(
     };
     let mut rows: Vec<HurstRow> = self_affine.iter().map(of_correlation).collect();
     let each = names.par_iter().zip(spectra);
-    let each = each.map(|(name, s)| of_spectrum(name, std::slice::from_ref(s)).ok());
-    rows.extend(each.collect::<Vec<_>>().into_iter().flatten());
+    let each = each.map(|(name, s)| (*name, of_spectrum(name, std::slice::from_ref(s))));
+    let mut missing = Vec::new();
+    for (name, row) in each.collect::<Vec<_>>() {
+        match row {
+            Ok(row) => rows.push(row),
+            Err(error) => missing.push((name.to_owned(), error.to_string())),
+        }
+    }
     match of_spectrum(AVERAGE, spectra) {
         Ok(row) => {
             rows.push(row);
-            (rows, Vec::new())
+            let what = "Hurst exponent of the spectrum";
+            let warning = warnings::left_out("windows", names.len(), what, &missing);
+            (rows, warning.into_iter().collect())
         }
+        // Then the windows have none either, for the same reason.
         Err(error) => {
             let keys = "characterise.hurst_shortest_wavelength_mm, hurst_longest_wavelength_mm";
             (rows, vec![format!("no Hurst exponent of the spectrum: {error} ({keys})")])

@@ -60,7 +60,8 @@ impl<'a> Solver<'a> {
         let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
         let profile = RigidProfile::from_waves(waves, period);
         let (rheology, options) = (Rheology::NeoHookean, BlockOptions::new(columns));
-        let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?;
+        let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?
+            .interruptible(watch.interrupted);
         let key = problem_parts(rubber, surface, speed_mm_s, columns);
         Ok(Self {
             surface,

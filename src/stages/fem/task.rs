@@ -102,12 +102,14 @@ impl Task {
     ) -> Result<CurveResult, StageError> {
         let Self { surface, speed_mm_s, first_guess } = self;
         let (waves, realisation) = (surface.waves, surface.realisation);
-        let failed = |source: SolveError| match watch.check_interrupt() {
-            Err(interrupt) => interrupt,
-            Ok(()) => {
-                let (speed_mm_s, source) = (*speed_mm_s, Box::new(source));
-                StageError::FiniteDeformation { waves, realisation, speed_mm_s, source }
-            }
+        let failed = |source: SolveError| {
+            let speed_mm_s = *speed_mm_s;
+            source.in_stage(|source| StageError::FiniteDeformation {
+                waves,
+                realisation,
+                speed_mm_s,
+                source,
+            })
         };
         let columns = self.columns(parameters);
         let new =

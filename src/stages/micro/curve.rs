@@ -8,11 +8,11 @@ use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, COLUMNS_RANGE, SteadyContact};
 use crate::multiscale::sampling::{geometric, interpolation_errors, refinement};
 use crate::multiscale::{LawEnd, LocalLaw};
+use crate::numerics::Interrupt;
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
 use crate::surface::{Wave, wave};
 use serde_json::{Value, json};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Revision of the solvers: part of the key of every stored solve.
@@ -37,7 +37,7 @@ pub(super) struct MicroCurve<'a> {
     task: &'a Task,
     store: &'a SolveStore,
     stored: Solves<'a>,
-    interrupted: &'a AtomicBool,
+    interrupted: &'a Interrupt,
     period: f64,
     columns: usize,
     half_space: Option<SlidingContact>,
@@ -53,7 +53,7 @@ impl<'a> MicroCurve<'a> {
         rubber: &'a Rubber,
         task: &'a Task,
         store: &'a SolveStore,
-        interrupted: &'a AtomicBool,
+        interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
         let columns = task.columns(parameters);
         Self::on(columns, parameters, rubber, task, store, interrupted)
@@ -65,7 +65,7 @@ impl<'a> MicroCurve<'a> {
         rubber: &'a Rubber,
         task: &'a Task,
         store: &'a SolveStore,
-        interrupted: &'a AtomicBool,
+        interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
         let stored = store.problem(&problem(rubber, &task.micro, task.speed_mm_s, columns))?;
         Ok(Self {
@@ -127,7 +127,7 @@ impl<'a> MicroCurve<'a> {
             match self.row(pressure) {
                 Ok(row) => rows.push(row),
                 Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
-                    rows.extend(self.last_on_path(&error, &rows));
+                    rows.extend(self.last_on_path(&error, &rows)?);
                     let (owners, speed_mm_s) = (self.task.owner_names(), self.task.speed_mm_s);
                     let reached = match rows.last() {
                         Some(SampleRow { pressure_mpa, .. }) => {
@@ -193,13 +193,24 @@ impl<'a> MicroCurve<'a> {
     }
 
     /// The last point of a path that ended, if it is beyond the samples and is solved again.
-    fn last_on_path(&mut self, error: &FemError, rows: &[SampleRow]) -> Option<SampleRow> {
+    fn last_on_path(
+        &mut self,
+        error: &FemError,
+        rows: &[SampleRow],
+    ) -> Result<Option<SampleRow>, SolveError> {
         let FemError::PathEnded { reached: PathEnd::At { pressure, .. }, .. } = error else {
-            return None;
+            return Ok(None);
         };
+        let Some(last) = rows.last() else { return Ok(None) };
         // A contact below the first sample has too few elements.
-        let beyond = *pressure > 1.05e6 * rows.last()?.pressure_mpa;
-        beyond.then(|| self.row(*pressure).ok()).flatten()
+        if *pressure <= 1.05e6 * last.pressure_mpa {
+            return Ok(None);
+        }
+        match self.row(*pressure) {
+            Ok(row) => Ok(Some(row)),
+            Err(error) if error.is_no_solution() => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// Writes the errors into the rows and returns the pressures in Pa that should be added.
@@ -232,7 +243,7 @@ impl<'a> MicroCurve<'a> {
     }
 
     fn row(&mut self, pressure: f64) -> Result<SampleRow, SolveError> {
-        if self.interrupted.load(Ordering::Relaxed) {
+        if self.interrupted.is_set() {
             return Err(SolveError::Interrupted);
         }
         let (Owner { waves, realisation }, speed_mm_s) =
@@ -283,6 +294,7 @@ impl<'a> MicroCurve<'a> {
             None => {
                 let speed = self.task.speed_mm_s / 1e3;
                 SlidingContact::new(self.rubber, speed, self.period, &self.heights())?
+                    .interruptible(self.interrupted)
             }
         };
         Ok(self.half_space.insert(contact))
@@ -300,6 +312,7 @@ impl<'a> MicroCurve<'a> {
                 let profile = RigidProfile::from_waves(&self.task.micro, self.period);
                 let options = BlockOptions::new(self.columns);
                 SteadyContact::new(self.rubber, Rheology::NeoHookean, speed, profile, options)?
+                    .interruptible(self.interrupted)
             }
         };
         Ok(self.block.insert(block))

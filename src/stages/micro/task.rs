@@ -5,6 +5,7 @@ use super::{Micro, TaskResult, columns, same_waves};
 use crate::artifact::{ArtifactError, Digest, SolveStore};
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{LocalLaw, SoftContact};
+use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use crate::stages::bem::CurveRow;
 use crate::stages::realise::Surface;
@@ -170,17 +171,14 @@ impl Task {
         store: &SolveStore,
         watch: Watch,
     ) -> Result<TaskResult, StageError> {
-        let failed = |source: SolveError| match watch.check_interrupt() {
-            Err(interrupt) => interrupt,
-            Ok(()) => StageError::Microscale {
-                owners: self.owner_names(),
-                speed_mm_s: self.speed_mm_s,
-                source: Box::new(source),
-            },
+        let failed = |source: SolveError| {
+            let (owners, speed_mm_s) = (self.owner_names(), self.speed_mm_s);
+            source.in_stage(|source| StageError::Microscale { owners, speed_mm_s, source })
         };
         let mut curve = MicroCurve::new(parameters, rubber, self, store, watch.interrupted)?;
         let (law, rows) = curve.law().map_err(failed)?;
-        let largest = self.largest_pressure(parameters, rubber, &law).map_err(failed)?;
+        let largest =
+            self.largest_pressure(parameters, rubber, &law, watch.interrupted).map_err(failed)?;
         let (mut samples, warning) = curve.sample(largest).map_err(failed)?;
         if parameters.estimate_mesh_error {
             curve.estimate_mesh_error(&mut samples).map_err(failed)?;
@@ -195,6 +193,7 @@ impl Task {
         parameters: &Micro,
         rubber: &Rubber,
         law: &LocalLaw,
+        interrupt: &Interrupt,
     ) -> Result<f64, SolveError> {
         let mut largest = 0.0_f64;
         for pressed in &self.surfaces {
@@ -202,7 +201,8 @@ impl Task {
             let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let speed = self.speed_mm_s / 1e3;
-            let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?;
+            let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?
+                .interruptible(interrupt);
             let solution = contact.solve(most_pressure_mpa * 1e6)?;
             largest = solution.pressure.into_iter().fold(largest, f64::max);
         }

@@ -6,6 +6,7 @@ use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::solution::SteadySolution;
 use crate::fem::steady::{BlockOptions, SteadyContact};
+use crate::numerics::Interrupt;
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
 use crate::surface::{Wave, wave};
@@ -115,15 +116,18 @@ impl Problem {
         &self,
         rubber: &Rubber,
         store: &SolveStore,
+        interrupt: &Interrupt,
     ) -> Result<Vec<Outcome>, SolveError> {
         let key = self.key(rubber);
         if let Some(outcomes) = store.get::<Vec<Outcome>>(&key)? {
             return Ok(outcomes);
         }
         let outcomes = match self.model {
-            Model::HalfSpace => self.half_space(rubber)?,
-            Model::Linear => self.finite_deformation(rubber, Rheology::Linear)?,
-            Model::NeoHookean => self.finite_deformation(rubber, Rheology::NeoHookean)?,
+            Model::HalfSpace => self.half_space(rubber, interrupt)?,
+            Model::Linear => self.finite_deformation(rubber, Rheology::Linear, interrupt)?,
+            Model::NeoHookean => {
+                self.finite_deformation(rubber, Rheology::NeoHookean, interrupt)?
+            }
         };
         store.put(&key, &outcomes)?;
         Ok(outcomes)
@@ -145,11 +149,16 @@ impl Problem {
         Wave { wavelength, amplitude: self.aspect_ratio * wavelength, phase: 0.0 }
     }
 
-    fn half_space(&self, rubber: &Rubber) -> Result<Vec<Outcome>, SolveError> {
+    fn half_space(
+        &self,
+        rubber: &Rubber,
+        interrupt: &Interrupt,
+    ) -> Result<Vec<Outcome>, SolveError> {
         let wave = self.wave();
         let heights = wave::sample(&[wave], wave.wavelength, self.columns);
         let speed = self.speed_mm_s / 1e3;
-        let mut contact = SlidingContact::new(rubber, speed, wave.wavelength, &heights)?;
+        let mut contact =
+            SlidingContact::new(rubber, speed, wave.wavelength, &heights)?.interruptible(interrupt);
         // Every pressure is solved from scratch, so one that fails is no end.
         let outcome = |pressure: &f64| match contact.solve(pressure * 1e6) {
             Ok(solution) => Ok(Outcome::Solved(self.read_half_space(&solution, &heights))),
@@ -184,21 +193,27 @@ impl Problem {
         &self,
         rubber: &Rubber,
         rheology: Rheology,
+        interrupt: &Interrupt,
     ) -> Result<Vec<Outcome>, SolveError> {
         let wave = self.wave();
         let speed = self.speed_mm_s / 1e3;
         let set_up = || {
             let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
             SteadyContact::new(rubber, rheology, speed, profile, BlockOptions::new(self.columns))
+                .map(|contact| contact.interruptible(interrupt))
         };
         // The contact at the pressure before, if it has a solution.
         let mut last: Option<SteadyContact> = None;
         let solve = |pressure: &f64| {
-            if let Some(mut contact) = last.take()
-                && let Ok(solution) = contact.solve(pressure * 1e6)
-            {
-                last = Some(contact);
-                return Ok(Outcome::Solved(self.read_block(&solution)));
+            if let Some(mut contact) = last.take() {
+                match contact.solve(pressure * 1e6) {
+                    Ok(solution) => {
+                        last = Some(contact);
+                        return Ok(Outcome::Solved(self.read_block(&solution)));
+                    }
+                    Err(error) if error.is_no_solution() => {}
+                    Err(error) => return Err(error.into()),
+                }
             }
             let mut contact = set_up()?;
             match contact.solve(pressure * 1e6) {

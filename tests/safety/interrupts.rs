@@ -1,0 +1,116 @@
+//! Ctrl-C and SIGTERM in the middle of a solve.
+
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::{Campaign, leftovers, quietly};
+
+/// A second, and what a machine takes that does eight other things.
+const BOUND: Duration = Duration::from_secs(10);
+
+/// One contact on four million points, which takes minutes.
+fn long_solve() -> Campaign {
+    let campaign = Campaign::new();
+    campaign.edit(
+        "recipe.toml",
+        "points_per_shortest_wavelength = 16",
+        "points_per_shortest_wavelength = 1048576",
+    );
+    campaign
+}
+
+fn start(campaign: &Campaign) -> Child {
+    let mut command = campaign.command("run recipe.toml --out out --threads 1");
+    command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Waits until the solves have begun.
+fn wait_for_a_solve(campaign: &Campaign, child: &mut Child) {
+    let begin = Instant::now();
+    while !campaign.path("out/realise/manifest.json").exists() {
+        assert!(begin.elapsed() < Duration::from_secs(120), "no solve has begun");
+        assert!(child.try_wait().unwrap().is_none(), "ended before it was interrupted");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(Duration::from_secs(3));
+    assert!(child.try_wait().unwrap().is_none(), "ended before it was interrupted");
+}
+
+/// Sends a signal by the shell, which knows kill itself.
+fn send(signal: &str, child: &Child) {
+    let kill = format!("kill -{signal} {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+}
+
+fn ended_within(bound: Duration, mut child: Child) -> (Option<i32>, Duration, String) {
+    let begin = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if begin.elapsed() > bound {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            panic!("did not end within {bound:?}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let elapsed = begin.elapsed();
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), elapsed, String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn an_interrupt_is_heard_within_a_solve() {
+    let campaign = long_solve();
+    for signal in ["INT", "TERM"] {
+        let mut child = start(&campaign);
+        wait_for_a_solve(&campaign, &mut child);
+        send(signal, &child);
+        let (code, elapsed, told) = ended_within(BOUND, child);
+        eprintln!("SIG{signal}: ended after {elapsed:.2?}");
+        assert_eq!(code, Some(130), "{told}");
+        assert!(told.contains("the same command continues"), "{told}");
+        assert_eq!(leftovers(&campaign.path("out")), Vec::<std::path::PathBuf>::new());
+    }
+    // What was done is kept, and a run on a usual grid goes on from there.
+    campaign.edit("recipe.toml", "1048576", "16");
+    let done = quietly(&campaign, "run recipe.toml --out out --json").json();
+    let computed = |stage: &serde_json::Value| stage["computed"].as_bool().unwrap();
+    let stages = done["stages"].as_array().unwrap();
+    let new: Vec<&str> =
+        stages.iter().filter(|s| computed(s)).map(|s| s["stage"].as_str().unwrap()).collect();
+    assert_eq!(new, ["bem", "tables"], "{done}");
+}
+
+#[test]
+fn the_second_interrupt_ends_the_process_at_once() {
+    let campaign = long_solve();
+    let mut child = start(&campaign);
+    wait_for_a_solve(&campaign, &mut child);
+    // A stopped process takes both signals when it goes on, before any of its own work.
+    send("STOP", &child);
+    send("INT", &child);
+    send("TERM", &child);
+    let (code, elapsed, told) = {
+        send("CONT", &child);
+        ended_within(Duration::from_secs(5), child)
+    };
+    eprintln!("ended after {elapsed:.2?}");
+    assert_eq!((code, told.as_str()), (Some(130), ""));
+}
+
+#[test]
+fn a_single_solve_ends_at_once() {
+    let campaign = Campaign::new();
+    for arguments in [
+        "solve bem --wave 0.0625:0.01867 --speed 10 --area 0.02 --points 4194304",
+        "solve fem --wave 0.0625:0.01867 --speed 10 --pressure 3 --columns 2048",
+    ] {
+        let mut command = campaign.command(arguments);
+        let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(Duration::from_secs(1));
+        send("INT", &child);
+        // By the signal itself: there is nothing to keep.
+        let (code, elapsed, _) = ended_within(BOUND, child);
+        eprintln!("{arguments}: ended after {elapsed:.2?}");
+        assert_eq!(code, None);
+    }
+}
