@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use crate::files::name::Utf8Path;
 use hdf5::types::{FloatSize, TypeDescriptor, VarLenUnicode};
 use hdf5::{Dataset, File, FileBuilder, Group, Location};
 use serde::Serialize;
@@ -117,8 +118,9 @@ pub fn write_arrays(
         ("description", Attribute::Text(description.to_owned())),
         ("content_digest", Attribute::Text(digest.to_string())),
     ];
+    let utf8 = Utf8Path::of(path).map_err(ArtifactError::io("create", path))?;
     let write = || -> hdf5::Result<()> {
-        let file = unlocked().create(path)?;
+        let file = unlocked().create(&utf8)?;
         for (name, value) in &header {
             write_attribute(&file, name, value)?;
         }
@@ -244,8 +246,9 @@ impl<'a> Reader<'a> {
     fn open(path: &'a Path) -> Result<Self, ArtifactError> {
         // Separates a file that is not there or not ours to read from one that is not HDF5.
         std::fs::File::open(path).map_err(ArtifactError::io("open", path))?;
+        let utf8 = Utf8Path::of(path).map_err(ArtifactError::io("open", path))?;
         let file = unlocked()
-            .open(path)
+            .open(utf8)
             .map_err(|error| ArtifactError::unreadable(path, FORMAT, innermost(&error)))?;
         Ok(Self { path, file })
     }
