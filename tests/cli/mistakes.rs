@@ -276,15 +276,13 @@ fn an_accuracy_has_one_range() {
 #[test]
 fn the_nearest_area_is_given_within_its_own_error() {
     let campaign = Campaign::new();
-    let solve = format!("{WAVE} --speed 10 --area 0.05 --points 4096 --json");
-    let found = run(&campaign, &solve).json();
-    let area = found["contact_area_fraction"].as_f64().unwrap();
+    // The area of this grid jumps over 0.01.
+    let solve = "solve bem --wave 0.0625:0.01867 --wave 0.5:0.05 --wave 8:0.3 --speed 0.1 --area 0.01 --json";
+    let found = run(&campaign, &format!("{solve} --points 4096")).json();
+    let distance = (found["contact_area_fraction"].as_f64().unwrap() - 0.01).abs();
     let error = found["error_estimate"]["contact_area_fraction"].as_f64().unwrap();
-    // To 1e-6 of the area, or else within its own error.
-    let near = error.max(1e-6 * 0.05);
-    assert!((area - 0.05).abs() <= near, "{area} with an error of {error}");
-    // No grid of 32 points tells 1e-4 from nothing.
-    let coarse = format!("{WAVE} --speed 10 --area 1e-4 --points 32");
-    let refused = run(&campaign, &coarse).error(1);
-    assert!(refused.contains("0.0001") && refused.contains("more points"), "{refused}");
+    assert!(distance > 1e-8 && distance <= error, "{distance} off with an error of {error}");
+    // That of a coarser one by more than it errs.
+    let refused = run(&campaign, &format!("{solve} --points 1024")).error(1);
+    assert!(refused.contains("fraction 0.01 on 1024 points"), "{refused}");
 }
