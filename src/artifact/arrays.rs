@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::Path;
 
+use crate::files::name::Utf8Path;
 use hdf5::types::{FloatSize, TypeDescriptor, VarLenUnicode};
 use hdf5::{Dataset, File, FileBuilder, Group, Location, LocationType};
 use serde::Serialize;
@@ -126,8 +127,9 @@ pub fn write_arrays(
         ("description", Attribute::Text(description.to_owned())),
         ("content_digest", Attribute::Text(digest.to_string())),
     ];
+    let utf8 = Utf8Path::of(path).map_err(ArtifactError::io("create", path))?;
     let write = || -> hdf5::Result<()> {
-        let file = in_memory().create(path)?;
+        let file = in_memory().create(&utf8)?;
         for (name, value) in &header {
             write_attribute(&file, name, value)?;
         }
@@ -294,8 +296,9 @@ impl<'a> Reader<'a> {
         let bytes = std::fs::File::open(path)
             .and_then(|file| Ok(file.metadata()?.len()))
             .map_err(ArtifactError::io("open", path))?;
+        let utf8 = Utf8Path::of(path).map_err(ArtifactError::io("open", path))?;
         let file = unlocked()
-            .open(path)
+            .open(utf8)
             .map_err(|error| ArtifactError::unreadable(path, FORMAT, innermost(&error)))?;
         Ok(Self { path, file, bytes })
     }

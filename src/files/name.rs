@@ -7,7 +7,9 @@
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, percent_encode};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use std::ffi::{OsStr, OsString};
+use std::io;
 use std::os::unix::ffi::OsStringExt;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
 const PREFIX: &str = "bytes:";
@@ -33,6 +35,44 @@ fn path_of(text: String) -> PathBuf {
         Some(escaped) => {
             PathBuf::from(OsString::from_vec(percent_decode_str(escaped).collect::<Vec<u8>>()))
         }
+    }
+}
+
+/// A path for libraries that take UTF-8 only: the path itself, or one through a temporary link that is there as
+/// long as this is.
+pub struct Utf8Path {
+    path: PathBuf,
+    _link: Option<tempfile::TempDir>,
+}
+
+impl Utf8Path {
+    /// # Errors
+    /// Those of the operating system, if a link is needed and cannot be made.
+    pub fn of(path: &Path) -> io::Result<Self> {
+        if path.to_str().is_some() {
+            return Ok(Self { path: path.to_owned(), _link: None });
+        }
+        let link = tempfile::tempdir()?;
+        let place = link.path().join("link");
+        let target = std::path::absolute(path)?;
+        // A file that is to be made has a name of ours: then its folder is the odd part of the path.
+        let path = match (target.parent(), target.file_name().and_then(OsStr::to_str)) {
+            (Some(folder), Some(name)) => {
+                symlink(folder, &place)?;
+                place.join(name)
+            }
+            _ => {
+                symlink(&target, &place)?;
+                place
+            }
+        };
+        Ok(Self { path, _link: Some(link) })
+    }
+}
+
+impl AsRef<Path> for Utf8Path {
+    fn as_ref(&self) -> &Path {
+        &self.path
     }
 }
 
@@ -131,6 +171,14 @@ mod tests {
         let toml = toml::to_string(&files).unwrap();
         assert_eq!(toml::from_str::<Files>(&toml).unwrap(), files);
         assert!(serde_json::from_str::<Files>(r#"{"one": "a\u0000", "many": []}"#).is_err());
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join(odd(b"stra\xdfe"));
+        std::fs::create_dir(&place).unwrap();
+        let new = place.join("new");
+        std::fs::write(Utf8Path::of(&new).unwrap(), "x").unwrap();
+        let own = place.join(odd(b"\xff"));
+        std::fs::rename(&new, &own).unwrap();
+        assert_eq!(std::fs::read(Utf8Path::of(&own).unwrap()).unwrap(), b"x");
         assert_eq!(text(odd(b"stra\xdfe").as_os_str()), "stra%DFe");
         assert_eq!(text(OsStr::new("straße %")), "straße %");
     }

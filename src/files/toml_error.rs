@@ -96,7 +96,7 @@ fn in_words(message: &str, typed: &str, line: &str) -> String {
     if is_decimal_comma(value) {
         return format!("{value} is not a number: the decimal mark is a point, not a comma");
     }
-    if message.starts_with("string values must be quoted") {
+    if value.ends_with('%') || message.starts_with("string values must be quoted") {
         return format!(
             "{value} is not a value: numbers are written without unit or percent sign (5 % is 0.05), texts in quotes"
         );

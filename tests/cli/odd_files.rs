@@ -69,7 +69,6 @@ fn names_that_are_not_utf_8_work_everywhere() {
         "inspect @ --json",
         "inspect @/tables/friction.arrow --json",
         "inspect scans/@.txt --json",
-        "inspect @.toml",
         "export @ --format markdown --to @.md",
         "report @ --to @.html",
         "plot friction @ --to @.svg",

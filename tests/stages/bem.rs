@@ -290,5 +290,5 @@ fn an_accuracy_beside_those_that_follow_from_it_is_refused() {
     let text = campaign.read("recipe.toml").replace("tolerance = 0.01\n", "");
     campaign.write("recipe.toml", &format!("tolerance = 2\n{text}"));
     let message = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
-    assert!(message.contains("tolerance = 2") && message.contains("1e-4 and 0.5"), "{message}");
+    assert!(message.contains("tolerance = 2") && message.contains("1e-8 and 0.5"), "{message}");
 }
