@@ -11,7 +11,7 @@ pub mod error;
 pub mod file;
 mod text;
 pub mod text_shape;
-mod thousands;
+pub(crate) mod thousands;
 
 use std::fs::File;
 use std::io::{self, Read};

@@ -1,9 +1,9 @@
 //! WLF and Arrhenius through shift factors, by least squares on `log10 a_T`.
 
 use super::least_squares::{LeastSquares, minimise};
-use super::{FittedLaw, ShiftFactor};
+use super::{FittedLaw, FittedVertical, ShiftFactor};
 use crate::numerics::statistics::student_t_975;
-use crate::rubber::ShiftLaw;
+use crate::rubber::{ShiftLaw, VerticalShift};
 use nalgebra::{DMatrix, DVector};
 
 /// Beyond this c2 in K the WLF equation is a straight line over any measured range: the data do not
@@ -48,6 +48,32 @@ fn arrhenius(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
     let residual_decades = (misses / freedom).sqrt();
     let half_width = student_t_975(freedom) * residual_decades / squares.sqrt();
     Some(FittedLaw { law, confidence_95: Some(vec![half_width]), residual_decades })
+}
+
+/// `ln b = m ln(T / T_r)` through the fitted vertical factors: a line through the reference.
+pub(super) fn fit_vertical(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedVertical> {
+    let unit = VerticalShift::Power { exponent: 1.0 };
+    let points: Vec<[f64; 2]> = shifts
+        .iter()
+        .filter(|shift| shift.temperature_c != reference_c)
+        .filter_map(|shift| {
+            let factor = shift.vertical?.factor;
+            Some([unit.ln_factor(shift.temperature_c, reference_c), factor.ln()])
+        })
+        .collect();
+    let squares: f64 = points.iter().map(|[x, _]| x * x).sum();
+    let exponent = points.iter().map(|[x, ln]| x * ln).sum::<f64>() / squares;
+    if !exponent.is_finite() {
+        return None;
+    }
+    let misses: f64 = points.iter().map(|[x, ln]| (ln - exponent * x).powi(2)).sum();
+    let freedom = points.len() as f64 - 1.0;
+    let residual = (freedom > 0.0).then(|| (misses / freedom).sqrt());
+    Some(FittedVertical {
+        law: VerticalShift::Power { exponent },
+        confidence_95: residual.map(|s| student_t_975(freedom) * s / squares.sqrt()),
+        residual,
+    })
 }
 
 /// The parameters are `ln c1` and `ln (c2 + T_min - T_r)`: the pole stays below all temperatures.
@@ -125,6 +151,7 @@ mod tests {
             temperature_c,
             log10_shift: law.log10_shift(temperature_c, 20.0),
             confidence_95: None,
+            vertical: None,
         };
         temperatures.iter().map(factor).collect()
     }
