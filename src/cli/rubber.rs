@@ -331,6 +331,13 @@ fn warnings(fit: &MasterCurve) -> Vec<String> {
              nor loss moduli join it to the others; measure at a temperature between, or give --shift-factors"
         ));
     }
+    for shift in fit.shifts.iter().filter(|shift| shift.uncertain) {
+        warnings.push(format!(
+            "the shift factor at {} °C hardly shows: storage moduli change by less than 5 % from there to the next \
+             sweep and loss moduli are flat; it is left out of the law, and may be off by more than its interval",
+            shift.temperature_c
+        ));
+    }
     for [colder, hotter] in &fit.joined_by_loss_c {
         warnings.push(format!(
             "the sweeps at {colder} °C and {hotter} °C have no storage moduli in common and were joined by loss \
@@ -418,6 +425,7 @@ impl<'a> Summary<'a> {
             None if Some(shift.temperature_c) == self.reference_c => "reference".into(),
             None => "given".into(),
         };
+        let half = if shift.uncertain { half + ", uncertain" } else { half };
         let vertical = shift.vertical.map_or(String::new(), |vertical| {
             let interval = vertical.confidence_95;
             let interval = interval.map(|[low, high]| format!(" ({low:.4} to {high:.4})"));

@@ -43,9 +43,18 @@ fn glassy_sweeps_come_back_by_their_loss() {
         let difference = number(&shift["temperature_c"]) - 25.0;
         let right = -30.0 * difference / (190.0 + difference);
         let miss = (number(&shift["log10_shift"]) - right).abs();
-        // The two coldest change E' by less than it scatters and have a flat E''.
-        let bound = if difference < -50.0 { 0.5 } else { 0.1 };
-        assert!(miss < bound, "{shift} {right}");
+        // E' of the coldest changes by less than it scatters, and its E'' is flat: it says so.
+        let uncertain = shift["uncertain"] == true;
+        assert_eq!(uncertain, difference == -60.0, "{shift}");
+        assert!(uncertain || miss < 0.1, "{shift} {right}");
+    }
+    assert!(outcome.stderr.contains("the shift factor at -35 °C hardly shows"));
+    let law = &json["laws"][0]["law"]["wlf"];
+    // Over the measured range the law is the right one to 0.1 decades.
+    for difference in [-52.5, -30.0, 22.5] {
+        let of = |c1: f64, c2: f64| -c1 * difference / (c2 + difference);
+        let miss = of(number(&law["c1"]), number(&law["c2_k"])) - of(30.0, 190.0);
+        assert!(miss.abs() < 0.1, "{law} {difference}");
     }
 }
 
@@ -70,7 +79,7 @@ fn master_curves_with_given_factors_are_read() {
         if reference.is_finite() {
             assert!((number(&described["reference_c"]) - reference).abs() < 0.01);
         }
-        assert!(number(&described["misfit"]["storage_modulus"]["rms"]) < 0.1, "{described}");
+        assert!(number(&described["misfit"]["storage_modulus"]["rms"]) < 0.15, "{described}");
         let friction = asperity(&format!(
             "solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3 --points 256 --rubber {to} --temperature-c 20"
         ));

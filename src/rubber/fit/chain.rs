@@ -31,6 +31,8 @@ pub(super) struct Chain {
     pub left_out: Vec<LeftOut>,
     /// Temperatures of the pairs that E'' and tan δ have joined, in °C.
     pub joined_by_loss_c: Vec<[f64; 2]>,
+    /// Whether a sweep lies behind a pair whose shift hardly shows, seen from the reference.
+    pub uncertain: Vec<bool>,
 }
 
 impl Chain {
@@ -85,6 +87,8 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
         values[group.clone()].iter().map(|value| value - values[reference]).collect()
     };
     let temperature = |k: usize| sweeps[k].temperature_c.unwrap_or(f64::NAN);
+    let between = |k: usize| if k < reference { k..reference } else { reference..k };
+    let uncertain = |k: usize| first.uncertain.iter().any(|pair| between(k).contains(pair));
     let by_loss = first.by_loss.iter().filter(|k| group.contains(k));
     let others = (0..sweeps.len()).filter(|k| !group.contains(k));
     Ok(Chain {
@@ -102,6 +106,7 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
             })
             .collect(),
         joined_by_loss_c: by_loss.map(|k| [temperature(*k), temperature(k + 1)]).collect(),
+        uncertain: group.clone().map(uncertain).collect(),
         sweeps: sweeps[group].to_vec(),
     })
 }
@@ -131,6 +136,7 @@ pub(super) fn given(
         vertical: options.vertical,
         left_out: Vec::new(),
         joined_by_loss_c: Vec::new(),
+        uncertain: vec![false; sweeps.len()],
         sweeps,
     };
     if let [Sweep { temperature_c: None, .. }] = chain.sweeps[..] {

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 /// Stiffer than any rubber glass, some 3 GPa, by far; in Pa.
 const STIFFEST: f64 = 2e10;
-/// Softer than any solid rubber whose sweeps are measured; in Pa.
-const SOFTEST: f64 = 1e3;
+/// Softer than the stiffest sweep of any solid rubber; in Pa.
+const SOFTEST: f64 = 5e4;
 /// No rubber is measured hotter throughout, in °C; but in K it would be.
 const HOTTEST_C: f64 = 150.0;
 /// By how much a storage modulus may fall over a sweep, relative; it cannot but for scatter.
@@ -67,7 +67,7 @@ fn falling(sweeps: &[Sweep]) -> Option<String> {
         "the storage modulus falls with frequency{at}{}, which that of a passive material cannot: check the columns, \
          are storage and loss modulus exchanged?",
         if falling.len() > 1 {
-            format!(" and in {} other sweeps", falling.len() - 1)
+            format!(" and in {} more", falling.len() - 1)
         } else {
             String::new()
         }
@@ -93,23 +93,23 @@ fn kelvin(table: &SweepTable) -> Option<String> {
     })
 }
 
-/// Frequencies in Hz that are 2π times a decimal ladder are most likely rad/s.
+/// Ladders of frequencies hold powers of ten. If those in Hz hold none, but 2π times some, they are
+/// most likely rad/s.
 fn radians(table: &SweepTable) -> Option<String> {
-    let decimal = |value: f64| {
-        let digits = value / 10_f64.powf(value.log10().floor());
-        (digits - digits.round()).abs() < 1e-3 * digits
-    };
-    let all = |of: &dyn Fn(&SweepPoint) -> f64| {
-        let (yes, count) = points(&table.sweeps)
-            .fold((0, 0), |(yes, count), point| (yes + usize::from(decimal(of(point))), count + 1));
-        10 * yes >= 9 * count
-    };
+    let decimal = |value: f64| (value.log10() - value.log10().round()).abs() < 1e-4;
     let hertz = |point: &SweepPoint| point.angular_frequency / TAU;
-    let suspicious = table.in_hertz && all(&|point| hertz(point) / TAU) && !all(&hertz);
-    let example = points(&table.sweeps).map(hertz).next()?;
-    suspicious.then(|| {
+    let mut decades: Vec<i32> = points(&table.sweeps)
+        .map(|point| hertz(point) / TAU)
+        .filter(|value| decimal(*value))
+        .map(|value| value.log10().round() as i32)
+        .collect();
+    decades.sort_unstable();
+    decades.dedup();
+    let plain = points(&table.sweeps).any(|point| decimal(hertz(point)));
+    let example = TAU * 10_f64.powi(*decades.first()?);
+    (table.in_hertz && decades.len() > 2 && !plain).then(|| {
         format!(
-            "the frequencies in Hz, such as {example:.6}, are 2π times round numbers: are they angular frequencies in \
+            "the frequencies in Hz, such as {example:.6}, are 2π times powers of ten: are they angular frequencies in \
              rad/s? Then say so by the unit, as in angular_frequency_rad_s"
         )
     })

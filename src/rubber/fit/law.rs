@@ -10,15 +10,18 @@ use nalgebra::{DMatrix, DVector};
 /// determine it.
 const LARGEST_C2_K: f64 = 1e5;
 
-/// Both laws, the better one first; without Arrhenius where none has a positive energy, without
+/// Both laws through the factors that are certain, the better one first; without Arrhenius where none has a positive energy, without
 /// WLF for fewer than three factors or where they do not determine it.
 ///
 /// The better one has the smaller residual variance, sum of squares over degrees of freedom. Every
 /// temperature weighs the same: that laws are no more than approximations is what they miss
 /// factors by, rather than noise.
 pub(super) fn fit_laws(shifts: &[ShiftFactor], reference_c: f64) -> Vec<FittedLaw> {
-    let others: Vec<ShiftFactor> =
-        shifts.iter().filter(|shift| shift.temperature_c != reference_c).copied().collect();
+    let others: Vec<ShiftFactor> = shifts
+        .iter()
+        .filter(|shift| shift.temperature_c != reference_c && !shift.uncertain)
+        .copied()
+        .collect();
     let mut laws: Vec<FittedLaw> = [arrhenius(&others, reference_c), wlf(&others, reference_c)]
         .into_iter()
         .flatten()
@@ -55,7 +58,7 @@ pub(super) fn fit_vertical(shifts: &[ShiftFactor], reference_c: f64) -> Option<F
     let unit = VerticalShift::Power { exponent: 1.0 };
     let points: Vec<[f64; 2]> = shifts
         .iter()
-        .filter(|shift| shift.temperature_c != reference_c)
+        .filter(|shift| shift.temperature_c != reference_c && !shift.uncertain)
         .filter_map(|shift| {
             let factor = shift.vertical?.factor;
             Some([unit.ln_factor(shift.temperature_c, reference_c), factor.ln()])
@@ -151,6 +154,7 @@ mod tests {
             temperature_c,
             log10_shift: law.log10_shift(temperature_c, 20.0),
             confidence_95: None,
+            uncertain: false,
             vertical: None,
         };
         temperatures.iter().map(factor).collect()

@@ -44,6 +44,9 @@ pub struct ShiftFactor {
     /// Half width of its 95 % confidence interval in decades; `None` at the reference and where it
     /// was given.
     pub confidence_95: Option<f64>,
+    /// Whether it hardly shows in the moduli, beyond what the interval says: it is no part of a law.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub uncertain: bool,
     /// The factor of the moduli, if there is a vertical shift.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertical: Option<VerticalFactor>,
@@ -212,7 +215,8 @@ impl MasterCurve {
             branches: self.terms.iter().map(branch).collect(),
             poisson_ratio,
         };
-        let temperatures = || self.shifts.iter().map(|shift| shift.temperature_c);
+        let certain = || self.shifts.iter().filter(|shift| !shift.uncertain);
+        let temperatures = || certain().map(|shift| shift.temperature_c);
         let measured_c =
             [temperatures().fold(f64::INFINITY, f64::min), temperatures().fold(-300.0, f64::max)];
         let temperature = self.laws.first().zip(self.reference_c).map(|(fitted, reference_c)| {
@@ -253,6 +257,7 @@ fn shift_factors(
             temperature_c: given.temperature_c,
             log10_shift: given.log10_shift,
             confidence_95: None,
+            uncertain: false,
             vertical: None,
         });
         return given.collect();
@@ -275,6 +280,7 @@ fn shift_factors(
             temperature_c,
             log10_shift: series.ln_shifts[k] / LN_10,
             confidence_95: half_width(problem.shift_index(k)).map(|half| half / LN_10),
+            uncertain: chain.uncertain[k],
             vertical: vertical(k),
         })
     };

@@ -17,6 +17,9 @@ use std::ops::Range;
 
 /// Points of each of two sweeps that must lie in the moduli of the other.
 const LEAST_COMMON_POINTS: usize = 2;
+/// Change of ln E' over two sweeps that tells their shift: samples of one rubber differ by some
+/// per cent from clamping to clamping.
+const LEAST_CHANGE: f64 = 0.05;
 
 /// First shifts of all sweeps, sorted by temperature.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +32,9 @@ pub(super) struct FirstShifts {
     pub groups: Vec<Range<usize>>,
     /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
     pub by_loss: Vec<usize>,
+    /// The colder one of each pair whose shift hardly shows: E' changes by less than it scatters,
+    /// and E'' and tan δ are flat.
+    pub uncertain: Vec<usize>,
 }
 
 /// Where the hotter of two neighbours belongs.
@@ -36,6 +42,7 @@ struct Pair {
     ln_shift: f64,
     ln_vertical: f64,
     by_loss: bool,
+    uncertain: bool,
 }
 
 /// Joins neighbours, and begins a new group where nothing joins them.
@@ -45,6 +52,7 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
         ln_verticals: vec![0.0],
         groups: Vec::new(),
         by_loss: Vec::new(),
+        uncertain: Vec::new(),
     };
     let mut start = 0;
     for (k, pair) in sweeps.windows(2).enumerate() {
@@ -53,6 +61,7 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
                 first.ln_shifts.push(first.ln_shifts[k] + pair.ln_shift);
                 first.ln_verticals.push(first.ln_verticals[k] + pair.ln_vertical);
                 first.by_loss.extend(pair.by_loss.then_some(k));
+                first.uncertain.extend(pair.uncertain.then_some(k));
             }
             None => {
                 first.groups.push(start..k + 1);
@@ -67,19 +76,28 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
 }
 
 fn joined(colder: &Sweep, hotter: &Sweep, free_vertical: bool) -> Option<Pair> {
-    let plain = |ln_shift| Pair { ln_shift, ln_vertical: 0.0, by_loss: false };
+    let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
+    let plain = |ln_shift| {
+        let uncertain = change(colder, hotter) < LEAST_CHANGE && by_loss().is_none();
+        Pair { ln_shift, ln_vertical: 0.0, by_loss: false, uncertain }
+    };
     if free_vertical {
         let Some(ln_shift) = best_place(colder, hotter, &[ln_loss_factor]) else {
             return by_storage(colder, hotter).map(plain);
         };
         let ln_storage = |point: &SweepPoint| point.storage_modulus.ln();
         let ln_vertical = mean_difference(colder, hotter, ln_shift, ln_storage)?;
-        return Some(Pair { ln_shift, ln_vertical, by_loss: false });
+        return Some(Pair { ln_shift, ln_vertical, by_loss: false, uncertain: false });
     }
     by_storage(colder, hotter).map(plain).or_else(|| {
-        let ln_shift = best_place(colder, hotter, &[ln_loss, ln_loss_factor])?;
-        Some(Pair { ln_shift, ln_vertical: 0.0, by_loss: true })
+        Some(Pair { ln_shift: by_loss()?, ln_vertical: 0.0, by_loss: true, uncertain: false })
     })
+}
+
+/// By what ln E' changes over both sweeps.
+fn change(colder: &Sweep, hotter: &Sweep) -> f64 {
+    let moduli = || colder.points.iter().chain(&hotter.points).map(|point| point.storage_modulus);
+    (moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)).ln()
 }
 
 /// The shift by the area between the curves of E'; `None` without common moduli.

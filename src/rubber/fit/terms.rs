@@ -56,12 +56,13 @@ pub(super) fn choose(
         let needed = (2 * wanted.unwrap_or(1) + without_terms(data) + 2).div_ceil(2);
         return Err(FitError::TooFewPoints { points: data.data.len(), needed });
     }
+    let first = previous.clone();
     let mut candidates: Vec<Candidate> = Vec::new();
     let mut best: Option<(f64, Fitted)> = None;
     let mut since_best = 0;
     for terms in 1..=wanted.unwrap_or(most) {
         let problem = Prony { terms, ..data.clone() };
-        let found = best_minimum(&problem, &previous);
+        let found = best_minimum(&problem, &previous, &first);
         let (candidate, fitted) = judge(problem, found, &mut previous);
         since_best += 1;
         if let (Some(fitted), Some(criterion)) = (fitted, candidate.bic) {
@@ -111,9 +112,11 @@ fn reduced_range(data: &Prony, shifts: &[f64]) -> [f64; 2] {
     [reduced().fold(f64::INFINITY, f64::min), reduced().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The better of two starts.
-fn best_minimum(problem: &Prony, previous: &Series) -> Option<Minimum> {
-    let spaced = spaced_start(problem, previous);
+/// The better of two starts. Few terms with free vertical factors move whole sweeps away from the
+/// others, so that evenly spaced times start from the first shifts again.
+fn best_minimum(problem: &Prony, previous: &Series, first: &Series) -> Option<Minimum> {
+    let shifts = if problem.free_verticals { first } else { previous };
+    let spaced = spaced_start(problem, shifts);
     let starts = [Some(spaced), inserted_start(problem, previous)];
     let ends = starts.iter().flatten().filter_map(|start| minimise(problem, problem.pack(start)));
     ends.min_by(|a, b| a.rms.total_cmp(&b.rms))
