@@ -166,36 +166,7 @@ struct TemperatureEntry {
     measured_c: Option<[f64; 2]>,
     wlf: Option<WlfEntry>,
     arrhenius: Option<ArrheniusEntry>,
-    vertical: Option<VerticalEntry>,
-}
-
-/// Externally tagged, so that exactly one key is allowed.
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-enum VerticalEntry {
-    RhoT(RhoTEntry),
-    Power(PowerEntry),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RhoTEntry {
-    expansion_per_k: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PowerEntry {
-    exponent: f64,
-}
-
-impl VerticalEntry {
-    fn shift(&self) -> VerticalShift {
-        match self {
-            Self::RhoT(entry) => VerticalShift::RhoT { expansion_per_k: entry.expansion_per_k },
-            Self::Power(entry) => VerticalShift::Power { exponent: entry.exponent },
-        }
-    }
+    vertical: Option<VerticalShift>,
 }
 
 #[derive(Deserialize)]
@@ -223,7 +194,7 @@ impl TemperatureEntry {
             (Some(_), Some(_)) => return Err(2),
         };
         let (reference_c, measured_c) = (self.reference_c, self.measured_c);
-        let vertical = self.vertical.as_ref().map(VerticalEntry::shift);
+        let vertical = self.vertical;
         Ok(TemperatureDependence { reference_c, law, measured_c, vertical })
     }
 }

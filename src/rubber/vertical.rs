@@ -1,12 +1,12 @@
 //! Vertical shift: how all moduli grow with temperature, beside the shift of the frequency.
 
 use super::ZERO_CELSIUS;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The factor `b_T` of all moduli at a temperature; 1 at the reference temperature T_r:
 /// `E*(ω, T) = b_T E*(a_T ω, T_r)`. tan δ does not depend on it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum VerticalShift {
     /// Entropic elasticity, density times absolute temperature (Ferry, Viscoelastic Properties of
     /// Polymers, 3rd edition, Wiley 1980, chapter 11): `b_T = ρ T / (ρ_r T_r)` with
