@@ -144,7 +144,8 @@ pub(super) fn no_header(grids: &[Grid], wanted: Wanted) -> Located {
 fn by_header(grid: &Grid, header: usize, wanted: Wanted) -> Result<Layout, Located> {
     let row = &grid.rows[header];
     let found = found(row);
-    let units = grid.rows.get(header + 1).filter(|units| are_units(units, &found));
+    let below = grid.rows.get(header + 1).map(|units| below(row, units, grid.blanks));
+    let units = below.as_ref().filter(|units| are_units(units, &found));
     let first_row = header + 1 + usize::from(units.is_some());
     let mut columns: Vec<(u8, Column)> = Vec::new();
     for (index, named) in &found {
@@ -185,6 +186,15 @@ fn by_header(grid: &Grid, header: usize, wanted: Wanted) -> Result<Layout, Locat
     // Names at runs of blanks fall into several cells.
     let width = if grid.blanks { 0 } else { row.cells.len() };
     Ok(Layout { columns, first_row, width, strain })
+}
+
+/// The row below a header, at runs of blanks with its last cells below the last names: a number of
+/// the point, which comes first, has no unit.
+fn below(header: &Row, units: &Row, blanks: bool) -> Row {
+    let absent = header.cells.len().saturating_sub(units.cells.len());
+    let padding = if blanks { absent } else { 0 };
+    let cells = vec![String::new(); padding].into_iter().chain(units.cells.iter().cloned());
+    Row { cells: cells.collect(), ..*units }
 }
 
 /// Whether a row behind a header states units: one of them, and no number where a column is.
