@@ -78,4 +78,5 @@ pub mod schemas;
 pub mod stages;
 pub mod surface;
 pub mod sweep;
+mod text;
 pub mod theory;

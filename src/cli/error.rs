@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::text::{cut, visible};
 
 type Cause = Box<dyn Error + Send + Sync>;
 
@@ -63,16 +64,18 @@ impl CliError {
     }
 
     /// The message and, a line each, its causes. A cause that stands in the message before it has
-    /// been said.
+    /// been said. Control characters of names are printed visibly, lines behind the first of a message
+    /// are indented, and what is longer than a screen or two is cut.
     pub fn report(&self) -> String {
         let mut last = self.to_string();
-        let mut report = format!("error: {}", last.trim_end());
+        let shown = |text: &str| visible(&cut(text.trim_end())).replace('\n', "\n    ");
+        let mut report = format!("error: {}", shown(&last));
         let mut source = self.source();
         while let Some(cause) = source {
             let text = cause.to_string();
             if !last.contains(&text) {
                 report.push_str("\n  caused by: ");
-                report.push_str(&text.trim_end().replace('\n', "\n    "));
+                report.push_str(&shown(&text));
                 last = text;
             }
             source = cause.source();

@@ -7,14 +7,16 @@ use std::path::Path;
 
 use super::CliError;
 use crate::artifact::temporary_beside;
+use crate::text::{cut, visible, visible_line};
 
-/// Prints a result to standard output. A reader that has seen enough, such as `head`, is no error.
+/// Prints a result to standard output, control characters of names in it visibly. A reader that has
+/// seen enough, such as `head`, is no error.
 ///
 /// # Errors
 /// [`CliError::Failure`] if standard output cannot be written.
 pub(super) fn print(text: &str) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(visible(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(CliError::failure(format!("cannot write to standard output: {error}")))
         }
@@ -26,7 +28,7 @@ pub(super) fn print(text: &str) -> Result<(), CliError> {
 pub(super) fn note(quiet: bool, text: impl Display) {
     if !quiet {
         // A closed standard error must not end a computation.
-        let _ = writeln!(io::stderr(), "{text}");
+        let _ = writeln!(io::stderr(), "{}", cut(&visible(&text.to_string())));
     }
 }
 
@@ -111,7 +113,7 @@ pub(super) fn refuse_existing(path: Option<&Path>, overwrite: bool) -> Result<()
 
 /// The refusal to overwrite a file.
 pub(super) fn already_exists(path: &Path) -> CliError {
-    let path = path.display();
+    let path = visible_line(&path.to_string_lossy()).into_owned();
     CliError::input(format!("{path} exists already: choose another place, or give --force"))
 }
 

@@ -1,18 +1,20 @@
 //! `asperity rubber`: a rubber file from measured moduli.
 
+mod summary;
+
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
-use serde::Serialize;
+use clap::{Args, Subcommand, ValueEnum};
 
-use super::output::{aligned, already_exists, json, note, print, significant, write_file};
+use super::output::{already_exists, json, note, print, write_file};
 use super::{CliError, values};
 use crate::report::rubber_figure;
 use crate::rubber::fit::{
-    Candidate, Estimate, FitOptions, FittedLaw, FittedTerm, MasterCurve, Misfit, ModulusKind,
-    ReducedPoint, ShiftFactor, fit_sweeps, read_sweeps,
+    DescribedColumn, FitError, FitOptions, LeftOut, MasterCurve, ModulusKind, ReducedPoint,
+    SweepTable, TableOptions, VerticalChoice, doubts, fit_sweeps, read_shift_factors, read_sweeps,
 };
-use crate::rubber::{FrequencyRange, ShiftLaw};
+use crate::scans::description::{DecimalMark, Separator};
+use summary::Summary;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,10 +22,21 @@ Examples:
     asperity rubber fit sweep.csv --kind youngs --to tread.toml
   Shear moduli at several temperatures (column temperature_c), shifted to 20 °C, with a plot:
     asperity rubber fit sweeps.csv --kind shear --reference-temperature-c 20 --to tread.toml --plot tread.svg
+  The export of an instrument, or a workbook, as it is:
+    asperity rubber fit frequency_sweep.xlsx --kind youngs --sheet Data --to tread.toml
+  A master curve without header whose shift factors are known:
+    asperity rubber fit master.txt --kind youngs --columns frequency_hz=1,storage_pa=2,loss_pa=3 \
+      --shift-factors shifts.txt --to tread.toml
+  Moduli that grow with density times temperature:
+    asperity rubber fit sweeps.csv --kind shear --vertical-shift rho-t --to tread.toml
   Friction of that rubber at 40 °C:
     asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3 --rubber tread.toml --temperature-c 40
 
 Exit codes: 0 fitted, 1 no fit or not written, 2 bad input.";
+
+/// Volume expansion of natural rubber in 1/K (Brandrup, Immergut & Grulke, Polymer Handbook, 4th
+/// edition, Wiley 1999); other rubbers differ by a tenth, which is 0.3 % of a modulus over 50 K.
+const VOLUME_EXPANSION_PER_K: f64 = 6.6e-4;
 
 /// Relative misfit (root mean square) above which the fit is called poor.
 const POOR: f64 = 0.1;
@@ -39,14 +52,15 @@ pub(super) enum Rubber {
 
 /// Fit a rubber to storage and loss moduli over frequency, at one or several temperatures.
 ///
-/// The CSV file has a header with the columns frequency_hz (or angular_frequency_rad_s),
-/// storage_mpa, loss_mpa (or _pa, _kpa, _gpa) and, optionally, temperature_c. Sweeps at several
-/// temperatures become a master curve; the rubber file then holds the law of the shift, so that
-/// it can be had at other temperatures. docs/rubber_data.md explains the method.
+/// The file is text or an .xlsx workbook with a header that names quantities and units, such as
+/// frequency_hz (or angular_frequency_rad_s), storage_mpa, loss_mpa (or _pa, _kpa, _gpa) and,
+/// optionally, temperature_c, or as instruments write it; --columns describes any other. Sweeps at
+/// several temperatures become a master curve; the rubber file then holds the law of the shift, so
+/// that the rubber is known at other temperatures. docs/rubber_data.md explains the method.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Fit {
-    /// CSV file of the measured points.
+    /// Measured points: CSV, text of an instrument, or .xlsx.
     #[arg(value_name = "SWEEP.CSV")]
     sweep: PathBuf,
     /// Which modulus was measured; never guessed.
@@ -61,6 +75,28 @@ pub(super) struct Fit {
     /// Reference temperature in °C, one of those measured [default: the middle one].
     #[arg(long, value_name = "C", value_parser = values::finite, allow_negative_numbers = true)]
     reference_temperature_c: Option<f64>,
+    /// How moduli change with temperature beside the shift of the frequency: not at all, with density
+    /// times absolute temperature, or by a factor that is fitted for every temperature.
+    #[arg(long, value_enum, value_name = "HOW", default_value = "none")]
+    vertical_shift: VerticalKind,
+    /// Volume expansion of the rubber in 1/K, for --vertical-shift rho-t [default: 6.6e-4].
+    #[arg(long, value_name = "PER_K", value_parser = values::finite, allow_negative_numbers = true)]
+    expansion_per_k: Option<f64>,
+    /// Shift factors to take as they are: a file with temperature_c and log10_shift or shift_factor.
+    #[arg(long, value_name = "FILE")]
+    shift_factors: Option<PathBuf>,
+    /// Where the columns are, by number or by name: frequency_hz=1,storage_mpa=2,loss_mpa=3.
+    #[arg(long, value_name = "QUANTITY=COLUMN", value_delimiter = ',')]
+    columns: Vec<DescribedColumn>,
+    /// What stands between the columns of a text [default: found from the content].
+    #[arg(long, value_enum, value_name = "WHAT")]
+    separator: Option<TextSeparator>,
+    /// Decimal mark, `.` or `,` [default: found from the content].
+    #[arg(long, value_name = "MARK", value_parser = decimal_mark)]
+    decimal_mark: Option<DecimalMark>,
+    /// Sheet of the workbook [default: the only one with sweeps].
+    #[arg(long, value_name = "NAME")]
+    sheet: Option<String>,
     /// Name of the rubber in tables [default: that of the file].
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
@@ -78,18 +114,27 @@ pub(super) struct Fit {
     force: bool,
 }
 
-/// What is printed; the names are the keys of the JSON object, in SI but for units in names.
-#[derive(Debug, Serialize)]
-struct Summary<'a> {
-    equilibrium_modulus: Estimate,
-    terms: &'a [FittedTerm],
-    misfit: Misfit,
-    points: usize,
-    measured: FrequencyRange,
-    reference_c: Option<f64>,
-    shifts: &'a [ShiftFactor],
-    laws: &'a [FittedLaw],
-    candidates: &'a [Candidate],
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum VerticalKind {
+    None,
+    RhoT,
+    Free,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TextSeparator {
+    Tab,
+    Comma,
+    Semicolon,
+    Blanks,
+}
+
+fn decimal_mark(text: &str) -> Result<DecimalMark, String> {
+    match text {
+        "." => Ok(DecimalMark::Point),
+        "," => Ok(DecimalMark::Comma),
+        _ => Err("give a point or a comma".into()),
+    }
 }
 
 impl Rubber {
@@ -104,9 +149,11 @@ impl Fit {
     fn run(&self, quiet: bool) -> Result<(), CliError> {
         self.check()?;
         let factor = self.kind.factor(self.poisson_ratio);
-        let sweeps = read_sweeps(&self.sweep, factor)?;
-        let options = FitOptions { terms: self.terms, reference_c: self.reference_temperature_c };
-        let fit = fit_sweeps(&sweeps, &options).map_err(|error| self.refusal(error))?;
+        let table = read_sweeps(&self.sweep, &self.table(), factor)?;
+        let doubts = doubts(&table, self.kind);
+        let fit = fit_sweeps(&table.sweeps, &self.options()?);
+        let fit = fit.map_err(|error| self.refusal(error, &doubts))?;
+        self.tell(&table, &doubts, quiet);
         for warning in warnings(&fit) {
             note(quiet, format_args!("warning: {warning}"));
         }
@@ -122,6 +169,49 @@ impl Fit {
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
 
+    /// How the file is to be read.
+    fn table(&self) -> TableOptions {
+        TableOptions {
+            columns: self.columns.clone(),
+            separator: self.separator.map(|separator| match separator {
+                TextSeparator::Tab => Separator::Tab,
+                TextSeparator::Comma => Separator::Comma,
+                TextSeparator::Semicolon => Separator::Semicolon,
+                TextSeparator::Blanks => Separator::Whitespace,
+            }),
+            decimal_mark: self.decimal_mark,
+            sheet: self.sheet.clone(),
+        }
+    }
+
+    fn options(&self) -> Result<FitOptions, CliError> {
+        let shift_factors = self.shift_factors.as_deref().map(read_shift_factors).transpose();
+        Ok(FitOptions {
+            terms: self.terms,
+            reference_c: self.reference_temperature_c,
+            vertical: match self.vertical_shift {
+                VerticalKind::None => VerticalChoice::None,
+                VerticalKind::RhoT => VerticalChoice::RhoT {
+                    expansion_per_k: self.expansion_per_k.unwrap_or(VOLUME_EXPANSION_PER_K),
+                },
+                VerticalKind::Free => VerticalChoice::Free,
+            },
+            shift_factors: shift_factors.map_err(CliError::input)?,
+        })
+    }
+
+    /// Tells how the file was read, where its header is not this program's, and what looks wrong.
+    fn tell(&self, table: &SweepTable, doubts: &[String], quiet: bool) {
+        let name = file_name(&self.sweep);
+        if table.interpreted {
+            let sweeps = table.sweeps.len();
+            note(quiet, format_args!("{name}: {}; {sweeps} sweeps", table.read_as));
+        }
+        for doubt in doubts {
+            note(quiet, format_args!("warning: {name}: {doubt}"));
+        }
+    }
+
     /// What is wrong before anything is read or written.
     fn check(&self) -> Result<(), CliError> {
         if !(0.0..=0.5).contains(&self.poisson_ratio) {
@@ -129,6 +219,18 @@ impl Fit {
             return Err(CliError::input(format!(
                 "--poisson-ratio is {ratio}, it must lie between 0 and 0.5"
             )));
+        }
+        if let Some(expansion) = self.expansion_per_k {
+            if self.vertical_shift != VerticalKind::RhoT {
+                return Err(CliError::input(
+                    "--expansion-per-k is for --vertical-shift rho-t: leave it out, or give that",
+                ));
+            }
+            if !(0.0..=0.003).contains(&expansion) {
+                return Err(CliError::input(format!(
+                    "--expansion-per-k is {expansion}, it must lie between 0 and 0.003: natural rubber has 6.6e-4"
+                )));
+            }
         }
         if self.terms == Some(0) {
             return Err(CliError::input("--terms is 0: give at least 1, or leave it out"));
@@ -155,9 +257,10 @@ impl Fit {
         Ok(())
     }
 
-    fn refusal(&self, error: crate::rubber::fit::FitError) -> CliError {
-        use crate::rubber::fit::FitError;
-        let text = format!("{}: {error}", self.sweep.display());
+    /// The error with the file, and with what looks wrong in it, which may be the reason.
+    fn refusal(&self, error: FitError, doubts: &[String]) -> CliError {
+        let doubts: String = doubts.iter().map(|doubt| format!("\n{doubt}")).collect();
+        let text = format!("{}: {error}{doubts}", self.sweep.display());
         match error {
             FitError::NoFit { .. } => CliError::failure(text),
             FitError::Reference { measured_c, .. } if measured_c.is_empty() => {
@@ -201,6 +304,26 @@ fn warnings(fit: &MasterCurve) -> Vec<String> {
             ));
         }
     }
+    for left_out in &fit.left_out {
+        let LeftOut { temperature_c, storage_mpa: [low, high] } = left_out;
+        warnings.push(format!(
+            "the sweep at {temperature_c} °C (storage modulus {low:.4} to {high:.4} MPa) is left out: neither storage \
+             nor loss moduli join it to the others; measure at a temperature between, or give --shift-factors"
+        ));
+    }
+    for shift in fit.shifts.iter().filter(|shift| shift.uncertain) {
+        warnings.push(format!(
+            "the shift factor at {} °C hardly shows: storage moduli change by less than 5 % from there to the next \
+             sweep and loss moduli are flat; it is left out of the law, and may be off by more than its interval",
+            shift.temperature_c
+        ));
+    }
+    for [colder, hotter] in &fit.joined_by_loss_c {
+        warnings.push(format!(
+            "the sweeps at {colder} °C and {hotter} °C have no storage moduli in common and were joined by loss \
+             modulus and tan delta"
+        ));
+    }
     let misfit = &fit.misfit;
     let worst = misfit.storage_modulus.rms.max(misfit.loss_modulus.rms);
     if worst > POOR {
@@ -218,93 +341,4 @@ fn warnings(fit: &MasterCurve) -> Vec<String> {
         );
     }
     warnings
-}
-
-impl<'a> Summary<'a> {
-    fn new(fit: &'a MasterCurve) -> Self {
-        Self {
-            equilibrium_modulus: fit.equilibrium_modulus,
-            terms: &fit.terms,
-            misfit: fit.misfit,
-            points: fit.points.len(),
-            measured: fit.measured,
-            reference_c: fit.reference_c,
-            shifts: &fit.shifts,
-            laws: &fit.laws,
-            candidates: &fit.candidates,
-        }
-    }
-
-    fn table(&self) -> String {
-        let mut text = format!(
-            "{:<12}  {:<34}  relaxation time / s\n",
-            "term", "modulus / MPa (95 % interval)"
-        );
-        let equilibrium = interval(&self.equilibrium_modulus, 1e6);
-        text += &format!("{:<12}  {equilibrium}\n", "equilibrium");
-        for (k, term) in self.terms.iter().enumerate() {
-            let (modulus, time) =
-                (interval(&term.modulus, 1e6), interval(&term.relaxation_time, 1.0));
-            text += &format!("{:<12}  {modulus:<34}  {time}\n", k + 1);
-        }
-        text += "\n";
-        let percent = |value: f64| format!("{} %", significant(100.0 * value));
-        let of = |d: &crate::rubber::fit::Deviation| {
-            format!("{} rms, {} at most", percent(d.rms), percent(d.largest))
-        };
-        let range = self.measured;
-        let at = self.reference_c.map_or(String::new(), |reference| format!(" at {reference} °C"));
-        text += &aligned(&[
-            ("terms", format!("{} ({} numbers tried)", self.terms.len(), self.candidates.len())),
-            ("points", self.points.to_string()),
-            ("measured", format!("{:.3e} to {:.3e} Hz{at}", range.lowest_hz, range.highest_hz)),
-            ("error of E'", of(&self.misfit.storage_modulus)),
-            ("error of E''", of(&self.misfit.loss_modulus)),
-            ("error of tan delta", of(&self.misfit.loss_factor)),
-        ]);
-        if !self.shifts.is_empty() {
-            text += "\ntemperature / °C  log10 of the shift factor\n";
-            for shift in self.shifts {
-                let half =
-                    shift.confidence_95.map_or("reference".into(), |half| format!("± {half:.1e}"));
-                text +=
-                    &format!("{:>16}  {:>9.4} {half}\n", shift.temperature_c, shift.log10_shift);
-            }
-            text += "\n";
-            text += &self.laws.iter().map(law).collect::<String>();
-        }
-        text
-    }
-}
-
-fn interval(estimate: &Estimate, unit: f64) -> String {
-    let number = |value: f64| significant(value / unit);
-    match estimate.confidence_95 {
-        Some([low, high]) => {
-            format!("{} ({} to {})", number(estimate.value), number(low), number(high))
-        }
-        None => format!("{} (at the limit)", number(estimate.value)),
-    }
-}
-
-fn law(fitted: &FittedLaw) -> String {
-    let half = |k: usize| {
-        let half_widths = fitted.confidence_95.as_ref();
-        half_widths.map_or(String::new(), |half| format!(" ± {}", significant(half[k])))
-    };
-    let coefficients = match fitted.law {
-        ShiftLaw::Wlf { c1, c2_k } => {
-            format!(
-                "WLF        c1 {}{}, c2 {}{} K",
-                significant(c1),
-                half(0),
-                significant(c2_k),
-                half(1)
-            )
-        }
-        ShiftLaw::Arrhenius { activation_energy_kj_mol: energy } => {
-            format!("Arrhenius  activation energy {}{} kJ/mol", significant(energy), half(0))
-        }
-    };
-    format!("{coefficients}; residual {} decades\n", significant(fitted.residual_decades))
 }

@@ -1,10 +1,13 @@
 //! Friction tables as a workbook.
 
 use super::{About, FrictionTable};
+use crate::text::visible_line;
 use rust_xlsxwriter::{Format, Workbook, Worksheet, XlsxError};
 
 /// Longest name of a sheet.
 const LONGEST_NAME: usize = 31;
+/// Most characters of a cell.
+const LONGEST_CELL: usize = 32_000;
 
 /// A workbook with a sheet for each table: the caption, the names of the columns, and all digits of the
 /// numbers, every realisation in a column of its own. Cells stay empty where there is no number.
@@ -25,7 +28,10 @@ pub fn workbook(tables: &[FrictionTable], about: &About) -> Result<Vec<u8>, Xlsx
 
 fn fill(sheet: &mut Worksheet, table: &FrictionTable, about: &About) -> Result<(), XlsxError> {
     let bold = Format::new().set_bold();
-    sheet.write_with_format(0, 0, table.caption(about), &bold)?;
+    // Written as a string, so that no name is a formula.
+    let caption =
+        visible_line(&table.caption(about)).chars().take(LONGEST_CELL).collect::<String>();
+    sheet.write_string_with_format(0, 0, caption, &bold)?;
     let realisations = table.rows.first().map_or(0, |row| row.realisations.len());
     let names = ["contact area fraction", "average", "standard deviation", "95 % of the mean"]
         .into_iter()

@@ -3,6 +3,7 @@
 
 use crate::artifact::{ArtifactError, RunView};
 use crate::stages::tables::{ComparisonRow, FrictionRow};
+use crate::text::{latex_text, markdown_text};
 use polars::prelude::{Column, DataFrame, PolarsError};
 use std::fmt::Write;
 
@@ -162,7 +163,7 @@ pub fn markdown(tables: &[FrictionTable], about: &About) -> String {
     for table in tables {
         let header = table.header();
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}\n", table.caption(about));
+        let _ = writeln!(text, "{}\n", markdown_text(&table.caption(about)));
         let _ = writeln!(text, "| {} |", header.join(" | "));
         let _ = writeln!(text, "|{}", "---:|".repeat(header.len()));
         for cells in table.cells() {
@@ -183,7 +184,7 @@ pub fn comparison_markdown(note: &str, rows: &[ComparisonRow], realisations: usi
             text,
             "## {}\n\n{} waves, {} mm/s; computed: mean of {realisations} realisations and half \
              width of its 95 % confidence interval, asperity {}\n",
-            first.published_table,
+            markdown_text(&first.published_table),
             first.waves,
             first.speed_mm_s,
             crate::artifact::TOOL_VERSION
@@ -218,7 +219,7 @@ pub fn latex(tables: &[FrictionTable], about: &About) -> String {
         let braced: Vec<String> = header.iter().map(|cell| format!("{{{cell}}}")).collect();
         let _ = writeln!(text, "% needs the packages booktabs and siunitx");
         let _ = writeln!(text, "\\begin{{table}}\n\\centering");
-        let _ = writeln!(text, "\\caption{{{}}}", escape(&table.caption(about)));
+        let _ = writeln!(text, "\\caption{{{}}}", latex_text(&table.caption(about)));
         let _ = writeln!(text, "\\begin{{tabular}}{{{columns}}}\n\\toprule");
         let _ = writeln!(text, "{} \\\\\n\\midrule", braced.join(" & "));
         for cells in table.cells() {
@@ -227,24 +228,6 @@ pub fn latex(tables: &[FrictionTable], about: &About) -> String {
         let _ = writeln!(text, "\\bottomrule\n\\end{{tabular}}\n\\end{{table}}\n");
     }
     text
-}
-
-/// Text with the characters that LaTeX takes for commands made harmless.
-fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '\\' => escaped.push_str("\\textbackslash{}"),
-            '~' => escaped.push_str("\\textasciitilde{}"),
-            '^' => escaped.push_str("\\textasciicircum{}"),
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
-                escaped.push('\\');
-                escaped.push(character);
-            }
-            _ => escaped.push(character),
-        }
-    }
-    escaped
 }
 
 #[cfg(test)]
@@ -289,6 +272,12 @@ mod tests {
         let text = latex(&tables, &about("50 % silica_x"));
         assert!(text.contains("rubber 50 \\% silica\\_x"), "{text}");
         assert_eq!(text.matches("\\toprule").count(), 2);
+        let odd = "a|b <i>\n\n% \u{1b}[2J \"q\" ~";
+        assert!(markdown(&tables, &about(odd)).contains("rubber a\\|b &lt;i&gt;\\\\u000a"));
+        let text = latex(&tables, &about(odd));
+        let caption = text.lines().find(|line| line.starts_with("\\caption")).unwrap();
+        assert!(caption.contains("\\% ") && caption.ends_with('}'), "{caption}");
+        assert!(!text.contains('\u{1b}'));
         let all = About { rubber: "x".into(), temperature_c: Some(-10.0), tolerance: Some(0.01) };
         assert_eq!(
             tables[0].caption(&all),
@@ -314,5 +303,29 @@ mod tests {
         let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
         assert_eq!(frame.shape(), (2, 14));
         assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
+    }
+
+    /// Names that would end a caption, a comment or the run of LaTeX.
+    #[test]
+    fn latex_with_odd_names_compiles() {
+        let version = std::process::Command::new("pdflatex").arg("--version").output();
+        if version.is_err() {
+            println!("skipped: there is no pdflatex on this machine");
+            return;
+        }
+        let tables = friction_tables(&[row(8, 0.002, &[0.701, 0.53646])]);
+        let odd = "a|b \"q\" 'r' `s` <i>\n\n% \\input{x} $_^~#&{} \u{1b}[2J ö 20 °C";
+        let body = latex(&tables, &about(odd));
+        let document = format!(
+            "\\documentclass{{article}}\n\\usepackage{{booktabs,siunitx}}\n\\begin{{document}}\n{body}\n\\end{{document}}\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("t.tex"), document).unwrap();
+        let output = std::process::Command::new("pdflatex")
+            .args(["-interaction=nonstopmode", "-halt-on-error", "t.tex"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
     }
 }

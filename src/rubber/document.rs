@@ -1,6 +1,6 @@
 //! A rubber as the text of its file.
 
-use super::{RubberData, ShiftLaw};
+use super::{RubberData, ShiftLaw, VerticalShift};
 
 impl RubberData {
     /// The TOML that [`read_rubber_data`](super::read_rubber_data) reads, numbers with seven
@@ -36,6 +36,17 @@ impl RubberData {
                 }
             });
         }
+        if let Some(vertical) = self.temperature.and_then(|temperature| temperature.vertical) {
+            lines.push("# Factor of all moduli at another temperature.".into());
+            lines.push(match vertical {
+                VerticalShift::RhoT { expansion_per_k } => {
+                    format!("vertical = {{ rho_t = {{ expansion_per_k = {expansion_per_k:e} }} }}")
+                }
+                VerticalShift::Power { exponent } => {
+                    format!("vertical = {{ power = {{ exponent = {exponent:.6e} }} }}")
+                }
+            });
+        }
         for branch in &rubber.branches {
             lines.push("\n[[branches]]".into());
             lines.push(format!("modulus_mpa = {:.6e}", branch.modulus / 1e6));
@@ -57,11 +68,17 @@ mod tests {
             ShiftLaw::Wlf { c1: 8.86, c2_k: 101.6 },
             ShiftLaw::Arrhenius { activation_energy_kj_mol: 90.0 },
         ];
-        for law in laws {
+        let verticals = [
+            None,
+            Some(VerticalShift::RhoT { expansion_per_k: 6.6e-4 }),
+            Some(VerticalShift::Power { exponent: 1.25 }),
+        ];
+        for (law, vertical) in laws.into_iter().flat_map(|law| verticals.map(|v| (law, v))) {
             let rubber = Rubber { name: "a \"tread\" \\ ö".into(), ..Rubber::table_2_1() };
             let measured = Some(FrequencyRange { lowest_hz: 0.1, highest_hz: 1.5e7 });
             let measured_c = Some([-30.0, 60.5]);
-            let temperature = Some(TemperatureDependence { reference_c: 20.0, law, measured_c });
+            let temperature =
+                Some(TemperatureDependence { reference_c: 20.0, law, measured_c, vertical });
             let data = RubberData { rubber, measured, temperature };
             let text = data.to_toml("sweep.csv");
             assert_eq!(parse_rubber_data(Path::new("tread.toml"), &text).unwrap(), data);

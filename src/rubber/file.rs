@@ -21,6 +21,7 @@
 //! reference_c = 20.0
 //! measured_c = [-30.0, 60.0]               # optional
 //! wlf = { c1 = 8.86, c2_k = 101.6 }        # or: arrhenius = { activation_energy_kj_mol = 90.0 }
+//! vertical = { rho_t = { expansion_per_k = 6.6e-4 } }   # optional; or: { power = { exponent = 1.1 } }
 //! ```
 
 use crate::error_kind::{ErrorKind, HasKind};
@@ -31,7 +32,7 @@ use serde::Deserialize;
 
 use super::{
     FrequencyRange, MaxwellBranch, Rubber, RubberError, ShiftLaw, TemperatureDependence,
-    TemperatureError,
+    TemperatureError, VerticalShift,
 };
 
 const PA_PER_MPA: f64 = 1e6;
@@ -142,7 +143,8 @@ impl RubberData {
     }
 
     /// The rubber at another temperature in °C, the new reference: relaxation times multiplied by the
-    /// shift factor, moduli as they are, measured frequencies divided by it.
+    /// shift factor, measured frequencies divided by it, moduli multiplied by the vertical factor
+    /// where the file has one.
     ///
     /// # Errors
     /// [`TemperatureError`] without a law, or where it has no shift factor.
@@ -153,7 +155,12 @@ impl RubberData {
         let factor = law.shift_factor(temperature_c)?;
         let measured = self.measured.map(|range| range.shifted(factor));
         let temperature = Some(law.about(temperature_c));
-        Ok(Self { rubber: self.rubber.shifted(factor), measured, temperature })
+        let shifted = self.rubber.shifted(factor);
+        let rubber = match law.vertical {
+            None => shifted,
+            Some(_) => shifted.scaled(law.vertical_factor(temperature_c)),
+        };
+        Ok(Self { rubber, measured, temperature })
     }
 }
 
@@ -180,6 +187,7 @@ struct TemperatureEntry {
     measured_c: Option<[f64; 2]>,
     wlf: Option<WlfEntry>,
     arrhenius: Option<ArrheniusEntry>,
+    vertical: Option<VerticalShift>,
 }
 
 #[derive(Deserialize)]
@@ -207,7 +215,8 @@ impl TemperatureEntry {
             (Some(_), Some(_)) => return Err(2),
         };
         let (reference_c, measured_c) = (self.reference_c, self.measured_c);
-        Ok(TemperatureDependence { reference_c, law, measured_c })
+        let vertical = self.vertical;
+        Ok(TemperatureDependence { reference_c, law, measured_c, vertical })
     }
 }
 

@@ -154,6 +154,17 @@ impl Rubber {
         Self { branches: self.branches.iter().map(shifted).collect(), ..self.clone() }
     }
 
+    /// The rubber with all moduli multiplied by a factor, as at another temperature.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let scaled =
+            |branch: &MaxwellBranch| MaxwellBranch { modulus: branch.modulus * factor, ..*branch };
+        Self {
+            equilibrium_modulus: self.equilibrium_modulus * factor,
+            branches: self.branches.iter().map(scaled).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Glassy modulus `E_inf + Σ E_k` in Pa, the limit of infinite frequency.
     pub fn glassy_modulus(&self) -> f64 {
         self.equilibrium_modulus + self.branches.iter().map(|b| b.modulus).sum::<f64>()

@@ -8,7 +8,9 @@ mod document;
 mod file;
 mod frequencies;
 mod maxwell;
+mod oddities;
 mod temperature;
+mod vertical;
 
 pub use file::{
     RubberData, RubberFileError, parse_rubber, parse_rubber_data, read_rubber, read_rubber_at,
@@ -20,3 +22,4 @@ pub use maxwell::{MaxwellBranch, Rubber, RubberError};
 pub use temperature::{
     GAS_CONSTANT, ShiftLaw, TemperatureDependence, TemperatureError, ZERO_CELSIUS,
 };
+pub use vertical::VerticalShift;

@@ -3,6 +3,7 @@
 use crate::error_kind::{ErrorKind, HasKind};
 use std::f64::consts::LN_10;
 
+use super::VerticalShift;
 use serde::Serialize;
 
 /// Molar gas constant in J/(mol K), exact since the SI of 2019.
@@ -38,6 +39,9 @@ pub struct TemperatureDependence {
     pub law: ShiftLaw,
     /// Lowest and highest temperature in °C that the law was fitted to.
     pub measured_c: Option<[f64; 2]>,
+    /// How the moduli themselves change with temperature; not at all if `None`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertical: Option<VerticalShift>,
 }
 
 /// Why there are no moduli at a temperature.
@@ -91,6 +95,16 @@ pub enum TemperatureError {
         /// Its value.
         value: f64,
     },
+    /// A coefficient of the vertical shift that no material has.
+    #[error("temperature.{coefficient} is {value}, it must lie {range}")]
+    Vertical {
+        /// Its key.
+        coefficient: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
     /// A measured range that is none.
     #[error(
         "temperature.measured_c is [{}, {}], wanted are the lowest and the highest temperature",
@@ -111,7 +125,8 @@ impl HasKind for TemperatureError {
             | Self::BelowPole { .. }
             | Self::TooFar { .. }
             | Self::Coefficient { .. }
-            | Self::Range { .. } => ErrorKind::Input,
+            | Self::Range { .. }
+            | Self::Vertical { .. } => ErrorKind::Input,
         }
     }
 }
@@ -163,6 +178,9 @@ impl TemperatureDependence {
                 return Err(TemperatureError::Coefficient { coefficient, value });
             }
         }
+        if let Some((coefficient, value, range)) = self.vertical.and_then(|v| v.mistake()) {
+            return Err(TemperatureError::Vertical { coefficient, value, range });
+        }
         match self.measured_c {
             Some(range) if !(range[0] < range[1] && range.iter().all(|t| t.is_finite())) => {
                 Err(TemperatureError::Range { range })
@@ -192,6 +210,12 @@ impl TemperatureDependence {
         Ok(10_f64.powf(log10_shift))
     }
 
+    /// Factor `b_T` of all moduli at a temperature in °C; 1 without a vertical shift.
+    pub fn vertical_factor(&self, temperature_c: f64) -> f64 {
+        let ln = |shift: VerticalShift| shift.ln_factor(temperature_c, self.reference_c);
+        self.vertical.map_or(1.0, |shift| ln(shift).exp())
+    }
+
     /// The same dependence about another reference temperature in °C; one that has a shift factor.
     pub fn about(&self, reference_c: f64) -> Self {
         let law = match self.law {
@@ -201,7 +225,8 @@ impl TemperatureDependence {
             }
             arrhenius @ ShiftLaw::Arrhenius { .. } => arrhenius,
         };
-        Self { reference_c, law, ..*self }
+        let vertical = self.vertical.map(|shift| shift.about(reference_c, self.reference_c));
+        Self { reference_c, law, vertical, ..*self }
     }
 
     /// A warning where the reference temperature lies outside those that the law was fitted to.
@@ -230,7 +255,12 @@ mod tests {
 
     fn wlf() -> TemperatureDependence {
         let law = ShiftLaw::Wlf { c1: 8.86, c2_k: 101.6 };
-        TemperatureDependence { reference_c: 20.0, law, measured_c: Some([-10.0, 60.0]) }
+        TemperatureDependence {
+            reference_c: 20.0,
+            law,
+            measured_c: Some([-10.0, 60.0]),
+            vertical: None,
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod lines;
 mod source;
 mod text;
 pub mod text_shape;
-mod thousands;
+pub(crate) mod thousands;
 
 use crate::files;
 use std::fs::File;

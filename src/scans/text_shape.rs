@@ -3,7 +3,7 @@
 //! Encoding, separator, decimal mark, header and columns are found from the content, units only
 //! where the file states them. Nothing is read by this: it is a proposal for the recipe.
 
-mod encoding;
+pub(crate) mod encoding;
 mod missing;
 #[cfg(test)]
 mod tests;

@@ -175,7 +175,7 @@ pub fn rubber(parameters: &Bem) -> Result<RubberData, StageError> {
 }
 
 /// Solves the contacts that are not in the store and writes the results; returns warnings where
-/// the rubber was not measured at its temperature or at the frequencies that the surfaces excite.
+/// the rubber looks like a mistake or was not measured at its temperature or at the frequencies that the surfaces excite.
 ///
 /// Realisations and speeds run side by side; each curve is computed by itself, and how many there are
 /// follows from the curves, so the numbers do not depend on the number of threads.
@@ -194,7 +194,9 @@ pub fn run(
     let mut families = families(parameters, &surfaces);
     Work::new(parameters, &material.rubber, store, context.watch).solve_all(&mut families)?;
     write(&mut context.pending, &families)?;
-    Ok(material.extrapolations(excited(parameters, &surfaces)))
+    let mut warnings = material.oddities();
+    warnings.extend(material.extrapolations(excited(parameters, &surfaces)));
+    Ok(warnings)
 }
 
 /// The tasks of a run that are next and that a packed store does not have: all realisations, or those that

@@ -18,7 +18,7 @@ pub use rows::{AgreementRow, AsymptoteRow, FieldRow, PeakRow, PointRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, SchemaVersion, SolveStore};
 use crate::recipe::{Violation, demand};
-use crate::rubber::{Rubber, read_rubber};
+use crate::rubber::{Rubber, RubberData, read_rubber};
 use points::{Case, Scale};
 use problem::Outcome;
 use rayon::prelude::*;
@@ -247,7 +247,8 @@ pub fn run(
         let fields = points::fields(&sweep, swept, &scale);
         pending.write_table(FIELDS_FILE, &fields, &none)?;
     }
-    let mut warnings = Vec::from_iter(warning("the sweep", &points));
+    let mut warnings = RubberData::from(rubber.clone()).oddities();
+    warnings.extend(warning("the sweep", &points));
     if parameters.pressure_dependence.is_some() {
         let rows = points::rows(&pressures, pressed, &scale);
         pending.write_table(PRESSURES_FILE, &rows, &none)?;

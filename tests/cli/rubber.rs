@@ -160,14 +160,21 @@ fn bad_sweeps_are_explained() {
             "frequency_hz,storage_mpa,loss_mpa\n1,2,1\n\n1.0,2,1\n",
             "line 4: the frequency 1.0 stands",
         ),
-        ("frequency_hz,storage_mpa,loss_mpa\nHz,MPa,MPa\n", "line 2: frequency_hz is `Hz`"),
+        ("frequency_hz,storage_mpa,loss_mpa\nHz,MPa,MPa\n", "there are no rows"),
+        ("frequency_hz,storage_mpa,loss_mpa\nHz,kPa,MPa\n", "is in MPa and the row below says kPa"),
         ("frequency_hz,storage_mpa,loss_mpa\n1,2,\n2,3,1\n", "line 2: loss_mpa is ``"),
         ("frequency_hz,storage_mpa,loss_mpa\n1,2,5,1\n", "line 2: 4 values where the header has 3"),
-        ("frequency_hz,storage_mpa,loss_mpa\n\"1,5\",2,1\n", "write decimals with a point"),
-        ("frequency_hz;storage_mpa;loss_mpa\n1,5;2;1\n", "separated by semicolons"),
-        ("frequency,storage_mpa,loss_mpa\n1,2,1\n", "no column of the frequency"),
+        ("frequency_hz,storage_mpa,loss_mpa\n1,5,2,1\n", "4 values where the header has 3"),
+        ("frequency_hz;storage_mpa;loss_mpa\n1;1.234,5;1\n", "line 2: `1.234,5` has a comma"),
+        ("frequency,storage_mpa,loss_mpa\n1,2,1\n", "`frequency` has no unit that is known"),
+        ("f_hz,E' [mPa],E'' [mPa]\n1,2,1\n", "has no unit that is known"),
+        ("storage_mpa,loss_mpa\n2,1\n", "no column of the frequency"),
         ("frequency_hz,storage_mpa\n1,2\n", "no column of the loss modulus"),
-        ("frequency_hz,storage_mpa,loss_mpa,strain\n1,2,1,1\n", "`strain` is not known"),
+        (
+            "strain,frequency_hz,storage_mpa,loss_mpa\n1,1,2,1\n2,1,2,1\n",
+            "line 3: the frequency 1 stands here for the second time: this looks like a strain sweep",
+        ),
+        ("frequency_hz,storage_mpa,loss_mpa,temperature_c\n1,2,1,-300\n", "absolute zero"),
         ("frequency_hz,storage_mpa,loss_mpa,loss_pa\n1,2,1,1\n", "2 columns of the loss modulus"),
         ("frequency_hz,storage_mpa,loss_mpa\n1,2e20,1\n2,3,1\n", "check the number and its unit"),
         (two_temperatures, "the sweeps at 0 °C"),
@@ -179,7 +186,10 @@ fn bad_sweeps_are_explained() {
     }
     fs::write(&sweep, [0xff, 0xfe, 0x00]).unwrap();
     let error = fit(&sweep, &format!("--to {}", rubber.display())).error(2);
-    assert!(error.contains("no UTF-8 text"), "{error}");
+    assert!(error.contains("there is no header"), "{error}");
+    fs::write(&sweep, [0xd0, 0xcf, 0x11, 0xe0, 0xa1, 0xb1]).unwrap();
+    let error = fit(&sweep, &format!("--to {}", rubber.display())).error(2);
+    assert!(error.contains("(.xls)") && error.contains("save it as .xlsx"), "{error}");
     let error =
         fit(&folder.path().join("none.csv"), &format!("--to {}", rubber.display())).error(2);
     assert!(error.contains("cannot read the sweeps"), "{error}");

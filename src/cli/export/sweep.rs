@@ -5,6 +5,7 @@ use crate::artifact::{RunView, csv_bytes, data_frame, parquet_bytes};
 use crate::report::{About, friction_tables, latex, markdown};
 use crate::stages::tables::FrictionRow;
 use crate::sweep::{FRICTION_FILE, STAGE, SweepFrictionRow};
+use crate::text::{markdown_text, visible_line};
 use std::fmt::Write;
 
 impl Export {
@@ -16,10 +17,10 @@ impl Export {
         match self.format {
             Format::Csv | Format::Parquet => self.keyed_table(view),
             Format::Markdown => self.document(view, |case, tables, about| {
-                format!("## {case}\n\n{}\n", markdown(tables, about))
+                format!("## {}\n\n{}\n", markdown_text(case), markdown(tables, about))
             }),
             Format::Latex => self.document(view, |case, tables, about| {
-                format!("% {case}\n{}\n", latex(tables, about))
+                format!("% {}\n{}\n", visible_line(case), latex(tables, about))
             }),
             Format::Xlsx | Format::Svg => Err(CliError::input(
                 "a sweep is exported as csv, parquet, markdown or latex; for a workbook or a figure give the \

@@ -29,7 +29,11 @@ pub(super) struct MaterialOptions {
 }
 
 /// The rubber at its temperature.
-pub(super) struct Material(RubberData);
+pub(super) struct Material {
+    data: RubberData,
+    /// Oddities of its file, if it has one.
+    oddities: Vec<String>,
+}
 
 impl MaterialOptions {
     pub(super) fn material(&self) -> Result<Material, CliError> {
@@ -40,13 +44,14 @@ impl MaterialOptions {
             }
             _ => Rubber::table_2_1().into(),
         };
+        let oddities = self.rubber.as_ref().map_or(Vec::new(), |_| data.oddities());
         let data = match self.temperature_c {
             None => data,
             Some(temperature_c) => {
                 data.at_temperature(temperature_c).map_err(|error| self.named(error))?
             }
         };
-        Ok(Material(data))
+        Ok(Material { data, oddities })
     }
 
     /// The rubber, if it can be had at finite deformation.
@@ -74,12 +79,14 @@ impl MaterialOptions {
 
 impl Material {
     pub(super) fn rubber(&self) -> &Rubber {
-        &self.0.rubber
+        &self.data.rubber
     }
 
-    /// What is extrapolated from the measurement of the rubber: the shift to its temperature, the
+    /// What looks like a mistake in its file, and what is extrapolated from the measurement of the rubber: the shift to its temperature, the
     /// frequencies that the profile excites at a speed in m/s.
     pub(super) fn warnings(&self, shape: &Shape, speed: f64) -> Vec<String> {
-        self.0.extrapolations(FrequencyRange::excited(shape.excited_wavelengths(), [speed]))
+        let excited = FrequencyRange::excited(shape.excited_wavelengths(), [speed]);
+        let extrapolations = self.data.extrapolations(excited);
+        self.oddities.iter().cloned().chain(extrapolations).collect()
     }
 }

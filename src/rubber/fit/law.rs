@@ -1,24 +1,27 @@
 //! WLF and Arrhenius through shift factors, by least squares on `log10 a_T`.
 
 use super::least_squares::{LeastSquares, minimise};
-use super::{FittedLaw, ShiftFactor};
+use super::{FittedLaw, FittedVertical, ShiftFactor};
 use crate::numerics::statistics::student_t_975;
-use crate::rubber::ShiftLaw;
+use crate::rubber::{ShiftLaw, VerticalShift};
 use nalgebra::{DMatrix, DVector};
 
 /// Beyond this c2 in K the WLF equation is a straight line over any measured range: the data do not
 /// determine it.
 const LARGEST_C2_K: f64 = 1e5;
 
-/// Both laws, the better one first; without Arrhenius where none has a positive energy, without
+/// Both laws through the factors that are certain, the better one first; without Arrhenius where none has a positive energy, without
 /// WLF for fewer than three factors or where they do not determine it.
 ///
 /// The better one has the smaller residual variance, sum of squares over degrees of freedom. Every
 /// temperature weighs the same: that laws are no more than approximations is what they miss
 /// factors by, rather than noise.
 pub(super) fn fit_laws(shifts: &[ShiftFactor], reference_c: f64) -> Vec<FittedLaw> {
-    let others: Vec<ShiftFactor> =
-        shifts.iter().filter(|shift| shift.temperature_c != reference_c).copied().collect();
+    let others: Vec<ShiftFactor> = shifts
+        .iter()
+        .filter(|shift| shift.temperature_c != reference_c && !shift.uncertain)
+        .copied()
+        .collect();
     let mut laws: Vec<FittedLaw> = [arrhenius(&others, reference_c), wlf(&others, reference_c)]
         .into_iter()
         .flatten()
@@ -48,6 +51,32 @@ fn arrhenius(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
     let residual_decades = (misses / freedom).sqrt();
     let half_width = student_t_975(freedom) * residual_decades / squares.sqrt();
     Some(FittedLaw { law, confidence_95: Some(vec![half_width]), residual_decades })
+}
+
+/// `ln b = m ln(T / T_r)` through the fitted vertical factors: a line through the reference.
+pub(super) fn fit_vertical(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedVertical> {
+    let unit = VerticalShift::Power { exponent: 1.0 };
+    let points: Vec<[f64; 2]> = shifts
+        .iter()
+        .filter(|shift| shift.temperature_c != reference_c && !shift.uncertain)
+        .filter_map(|shift| {
+            let factor = shift.vertical?.factor;
+            Some([unit.ln_factor(shift.temperature_c, reference_c), factor.ln()])
+        })
+        .collect();
+    let squares: f64 = points.iter().map(|[x, _]| x * x).sum();
+    let exponent = points.iter().map(|[x, ln]| x * ln).sum::<f64>() / squares;
+    if !exponent.is_finite() {
+        return None;
+    }
+    let misses: f64 = points.iter().map(|[x, ln]| (ln - exponent * x).powi(2)).sum();
+    let freedom = points.len() as f64 - 1.0;
+    let residual = (freedom > 0.0).then(|| (misses / freedom).sqrt());
+    Some(FittedVertical {
+        law: VerticalShift::Power { exponent },
+        confidence_95: residual.map(|s| student_t_975(freedom) * s / squares.sqrt()),
+        residual,
+    })
 }
 
 /// The parameters are `ln c1` and `ln (c2 + T_min - T_r)`: the pole stays below all temperatures.
@@ -125,6 +154,8 @@ mod tests {
             temperature_c,
             log10_shift: law.log10_shift(temperature_c, 20.0),
             confidence_95: None,
+            uncertain: false,
+            vertical: None,
         };
         temperatures.iter().map(factor).collect()
     }

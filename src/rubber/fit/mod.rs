@@ -4,14 +4,17 @@
 //! temperature, and a shift factor for every other temperature,
 //!
 //! ```text
-//! E*(ω, T) = E*(a_T ω, T_r),   E*(ω) = E_inf + sum_i E_i i ω τ_i / (1 + i ω τ_i)
+//! E*(ω, T) = b_T E*(a_T ω, T_r),   E*(ω) = E_inf + sum_i E_i i ω τ_i / (1 + i ω τ_i)
 //! ```
 //!
 //! They minimise the sum of squares of `ln E'` and `ln E''` against the measured ones: relative
 //! deviations, every point and both moduli with the same weight. Relaxation times are free within
-//! a decade of the measured range, the number of terms follows from a criterion. Shifts are
-//! horizontal only: the moduli themselves are taken to be the same at all temperatures.
+//! a decade of the measured range, the number of terms follows from a criterion. The vertical
+//! factor b_T is 1 unless a choice says otherwise ([`VerticalChoice`]).
 
+mod chain;
+mod doubts;
+mod join;
 mod law;
 mod least_squares;
 mod model;
@@ -22,15 +25,22 @@ mod table;
 mod terms;
 
 #[cfg(test)]
+mod shift_tests;
+#[cfg(test)]
 mod tests;
 
+pub use doubts::doubts;
 pub use result::{
-    Candidate, Deviation, Estimate, FittedLaw, FittedTerm, MasterCurve, Misfit, ReducedPoint,
-    ShiftFactor,
+    Candidate, Deviation, Estimate, FittedLaw, FittedTerm, FittedVertical, LeftOut, MasterCurve,
+    Misfit, ReducedPoint, ShiftFactor, VerticalFactor,
 };
-pub use sweep::{FitError, FitOptions, ModulusKind, Sweep, SweepPoint};
-pub use table::{TableError, parse_sweeps, read_sweeps};
+pub use sweep::{FitError, FitOptions, GivenShift, ModulusKind, Sweep, SweepPoint, VerticalChoice};
+pub use table::{
+    DescribedColumn, SweepTable, TableError, TableOptions, parse_sweeps, read_shift_factors,
+    read_sweeps,
+};
 
+use chain::Chain;
 use model::{Datum, Prony};
 
 /// Decades by which relaxation times may lie outside the measured range.
@@ -62,40 +72,42 @@ const SAME_TEMPERATURE_K: f64 = 0.5;
 /// ```
 pub fn fit_sweeps(sweeps: &[Sweep], options: &FitOptions) -> Result<MasterCurve, FitError> {
     let sweeps = sweep::checked(sweeps)?;
-    let reference = reference(&sweeps, options.reference_c)?;
-    let first = shift::first_shifts(&sweeps, reference)?;
-    let data = problem(&sweeps, reference, &first);
-    let (fitted, candidates) = terms::choose(&data, options.terms, first)?;
-    Ok(MasterCurve::new(&sweeps, &fitted, candidates))
+    if options.vertical != VerticalChoice::None && sweeps.len() < 2 {
+        return Err(FitError::VerticalWithoutTemperature);
+    }
+    let chain = match &options.shift_factors {
+        Some(given) => chain::given(sweeps, given, options)?,
+        None => chain::joined(sweeps, options)?,
+    };
+    let data = problem(&chain);
+    let (fitted, candidates) = terms::choose(&data, options.terms, chain.start())?;
+    Ok(MasterCurve::new(&chain, &fitted, candidates))
 }
 
-/// Number of the sweep at the reference temperature: the wanted one, else the middle one.
-fn reference(sweeps: &[Sweep], wanted: Option<f64>) -> Result<usize, FitError> {
-    let Some(wanted_c) = wanted else { return Ok((sweeps.len() - 1) / 2) };
-    let distance = |sweep: &Sweep| (sweep.temperature_c.unwrap_or(f64::NAN) - wanted_c).abs();
-    let nearest =
-        (0..sweeps.len()).min_by(|a, b| distance(&sweeps[*a]).total_cmp(&distance(&sweeps[*b])));
-    nearest.filter(|k| distance(&sweeps[*k]) <= SAME_TEMPERATURE_K).ok_or_else(|| {
-        let measured_c = sweeps.iter().filter_map(|sweep| sweep.temperature_c).collect();
-        FitError::Reference { wanted_c, measured_c }
-    })
-}
-
-fn problem(sweeps: &[Sweep], reference: usize, shifts: &[f64]) -> Prony {
+fn problem(chain: &Chain) -> Prony {
+    let Chain { sweeps, reference, ln_shifts, .. } = chain;
     let datum = |(sweep, point): (usize, &SweepPoint)| Datum {
         ln_frequency: point.angular_frequency.ln(),
         sweep,
-        ln_storage: point.storage_modulus.ln(),
-        ln_loss: point.loss_modulus.ln(),
+        ln_storage: point.storage_modulus.ln() - chain.ln_known_vertical(sweep),
+        ln_loss: point.loss_modulus.ln() - chain.ln_known_vertical(sweep),
     };
     let points = sweeps.iter().enumerate();
     let data: Vec<Datum> =
         points.flat_map(|(k, sweep)| sweep.points.iter().map(move |p| (k, p))).map(datum).collect();
-    let reduced = || data.iter().map(|datum| datum.ln_frequency + shifts[datum.sweep]);
+    let reduced = || data.iter().map(|datum| datum.ln_frequency + ln_shifts[datum.sweep]);
     let margin = MARGIN_DECADES * std::f64::consts::LN_10;
     let limits = [
         -reduced().fold(f64::NEG_INFINITY, f64::max) - margin,
         -reduced().fold(f64::INFINITY, f64::min) + margin,
     ];
-    Prony { data, terms: 0, sweeps: sweeps.len(), reference, limits }
+    Prony {
+        data,
+        terms: 0,
+        sweeps: sweeps.len(),
+        reference: *reference,
+        limits,
+        given_shifts: chain.given.then(|| ln_shifts.clone()),
+        free_verticals: chain.vertical == VerticalChoice::Free,
+    }
 }

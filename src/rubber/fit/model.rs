@@ -3,11 +3,11 @@
 //! ```text
 //! E'(ω)  = E_inf + sum_i E_i y_i^2 / (1 + y_i^2),   y_i = a ω τ_i
 //! E''(ω) =         sum_i E_i y_i   / (1 + y_i^2)
-//! r      = ln E'(ω_j) - ln E'_j,  ln E''(ω_j) - ln E''_j
+//! r      = ln b E'(ω_j) - ln E'_j,  ln b E''(ω_j) - ln E''_j
 //! ```
 //!
-//! with the shift factor a of the temperature, 1 at the reference. The parameters are
-//! `ln E_inf, ln E_i, u_i, ln a_k`: moduli cannot become negative, and
+//! with the shift factor a and the vertical factor b of the temperature, both 1 at the reference.
+//! The parameters are `ln E_inf, ln E_i, u_i, ln a_k, ln b_k`, the last two where they are free: moduli cannot become negative, and
 //! `ln τ_i = centre + half sin(u_i / half)` keeps a time within its limits (as in MINUIT).
 
 use super::least_squares::LeastSquares;
@@ -36,6 +36,10 @@ pub(super) struct Prony {
     pub reference: usize,
     /// ln of the shortest and the longest time in s.
     pub limits: [f64; 2],
+    /// ln a of every sweep where shift factors are given; they are fitted otherwise.
+    pub given_shifts: Option<Vec<f64>>,
+    /// Whether the vertical factors are fitted; they are 1 otherwise.
+    pub free_verticals: bool,
 }
 
 /// A Prony series in logarithms, with the shift factors of the sweeps.
@@ -46,6 +50,8 @@ pub(super) struct Series {
     pub terms: Vec<[f64; 2]>,
     /// ln a of every sweep.
     pub ln_shifts: Vec<f64>,
+    /// ln b of every sweep.
+    pub ln_verticals: Vec<f64>,
 }
 
 impl Prony {
@@ -59,7 +65,10 @@ impl Prony {
 
     /// Number of parameters.
     pub fn parameters(&self) -> usize {
-        2 * self.terms + self.sweeps
+        let others = self.sweeps - 1;
+        let shifts = if self.given_shifts.is_some() { 0 } else { others };
+        let verticals = if self.free_verticals { others } else { 0 };
+        1 + 2 * self.terms + shifts + verticals
     }
 
     pub fn pack(&self, series: &Series) -> DVector<f64> {
@@ -67,12 +76,16 @@ impl Prony {
         let moduli = series.terms.iter().map(|term| term[0]);
         let angle = |term: &[f64; 2]| half * ((term[1] - centre) / half).clamp(-0.99, 0.99).asin();
         let times = series.terms.iter().map(angle);
-        let shifts = (0..self.sweeps).filter(|k| *k != self.reference);
-        let shifts = shifts.map(|k| series.ln_shifts[k]);
+        let free = |index: Option<usize>, value: f64| index.map(|_| value);
+        let shifts =
+            (0..self.sweeps).filter_map(|k| free(self.shift_index(k), series.ln_shifts[k]));
+        let verticals =
+            (0..self.sweeps).filter_map(|k| free(self.vertical_index(k), series.ln_verticals[k]));
         let all: Vec<f64> = std::iter::once(series.ln_equilibrium)
             .chain(moduli)
             .chain(times)
             .chain(shifts)
+            .chain(verticals)
             .collect();
         DVector::from_vec(all)
     }
@@ -81,17 +94,30 @@ impl Prony {
         let (n, half) = (self.terms, self.half());
         let ln_time = |i: usize| self.centre() + half * (parameters[1 + n + i] / half).sin();
         let terms = (0..n).map(|i| [parameters[1 + i], ln_time(i)]).collect();
-        let shift = |k: usize| match self.shift_index(k) {
-            Some(index) => parameters[index],
-            None => 0.0,
+        let free = |index: Option<usize>| index.map_or(0.0, |index| parameters[index]);
+        let ln_shifts = match &self.given_shifts {
+            Some(given) => given.clone(),
+            None => (0..self.sweeps).map(|k| free(self.shift_index(k))).collect(),
         };
-        let ln_shifts = (0..self.sweeps).map(shift).collect();
-        Series { ln_equilibrium: parameters[0], terms, ln_shifts }
+        let ln_verticals = (0..self.sweeps).map(|k| free(self.vertical_index(k))).collect();
+        Series { ln_equilibrium: parameters[0], terms, ln_shifts, ln_verticals }
     }
 
-    /// The place of the shift of a sweep among the parameters; the reference has none.
+    /// The place of the shift of a sweep among the parameters; the reference has none, nor have
+    /// given shifts.
     pub fn shift_index(&self, sweep: usize) -> Option<usize> {
-        let start = 1 + 2 * self.terms;
+        let free = self.given_shifts.is_none();
+        free.then(|| self.index(1 + 2 * self.terms, sweep)).flatten()
+    }
+
+    /// The place of the vertical factor of a sweep among the parameters, likewise.
+    pub fn vertical_index(&self, sweep: usize) -> Option<usize> {
+        let shifts = if self.given_shifts.is_some() { 0 } else { self.sweeps - 1 };
+        let start = 1 + 2 * self.terms + shifts;
+        self.free_verticals.then(|| self.index(start, sweep)).flatten()
+    }
+
+    fn index(&self, start: usize, sweep: usize) -> Option<usize> {
         match sweep.cmp(&self.reference) {
             std::cmp::Ordering::Less => Some(start + sweep),
             std::cmp::Ordering::Equal => None,
@@ -113,13 +139,18 @@ impl Prony {
         (0..self.parameters()).filter(|column| !limited(*column)).collect()
     }
 
-    /// Derivatives of the residuals by `ln E_inf, ln E_i, ln τ_i, ln a_k`.
+    /// Derivatives of the residuals by `ln E_inf, ln E_i, ln τ_i, ln a_k, ln b_k`.
     pub fn logarithmic_jacobian(&self, series: &Series) -> DMatrix<f64> {
         let n = self.terms;
         let mut jacobian = DMatrix::zeros(2 * self.data.len(), self.parameters());
         for (j, datum) in self.data.iter().enumerate() {
-            let [storage, loss] = series.moduli(datum);
+            // Without the vertical factor, which the quotients below do not contain.
+            let [storage, loss] = series.moduli_at_reference(datum);
             let (row, next) = (2 * j, 2 * j + 1);
+            if let Some(column) = self.vertical_index(datum.sweep) {
+                jacobian[(row, column)] = 1.0;
+                jacobian[(next, column)] = 1.0;
+            }
             jacobian[(row, 0)] = series.ln_equilibrium.exp() / storage;
             for (i, term) in series.terms.iter().enumerate() {
                 let [s, l] = weights(series.ln_reduced_frequency(datum) + term[1]);
@@ -174,6 +205,12 @@ impl Series {
 
     /// Storage and loss modulus in Pa at the frequency and temperature of a point.
     pub fn moduli(&self, datum: &Datum) -> [f64; 2] {
+        let vertical = self.ln_verticals[datum.sweep].exp();
+        self.moduli_at_reference(datum).map(|modulus| vertical * modulus)
+    }
+
+    /// The same without the vertical factor.
+    fn moduli_at_reference(&self, datum: &Datum) -> [f64; 2] {
         let ln_frequency = self.ln_reduced_frequency(datum);
         let start = [self.ln_equilibrium.exp(), 0.0];
         self.terms.iter().fold(start, |[storage, loss], term| {

@@ -1,12 +1,14 @@
 //! What a fit gives: a rubber with intervals, its misfit, shift factors and their law.
 
-use super::law::fit_laws;
+use super::chain::Chain;
+use super::law::{fit_laws, fit_vertical};
 use super::model::{Prony, Series};
 use super::terms::Fitted;
-use super::{Sweep, SweepPoint};
+use super::{Sweep, SweepPoint, VerticalChoice};
 use crate::numerics::statistics::student_t_975;
 use crate::rubber::{
     FrequencyRange, MaxwellBranch, Rubber, RubberData, ShiftLaw, TemperatureDependence,
+    VerticalShift,
 };
 use serde::Serialize;
 use std::f64::consts::{LN_10, TAU};
@@ -39,8 +41,44 @@ pub struct ShiftFactor {
     pub temperature_c: f64,
     /// `log10 a_T`.
     pub log10_shift: f64,
-    /// Half width of its 95 % confidence interval in decades; `None` at the reference.
+    /// Half width of its 95 % confidence interval in decades; `None` at the reference and where it
+    /// was given.
     pub confidence_95: Option<f64>,
+    /// Whether it hardly shows in the moduli, beyond what the interval says: it is no part of a law.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub uncertain: bool,
+    /// The factor of the moduli, if there is a vertical shift.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertical: Option<VerticalFactor>,
+}
+
+/// The vertical factor of a temperature.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct VerticalFactor {
+    /// `b_T`, by which moduli are larger than at the reference.
+    pub factor: f64,
+    /// Lower and upper end of its 95 % confidence interval; `None` where it is not fitted.
+    pub confidence_95: Option<[f64; 2]>,
+}
+
+/// The vertical shift that goes into the rubber file.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FittedVertical {
+    /// The factor over temperature.
+    pub law: VerticalShift,
+    /// Half width of the 95 % confidence interval of its coefficient; `None` where that was given.
+    pub confidence_95: Option<f64>,
+    /// Residual standard deviation of `ln b_T`; `None` where nothing was fitted.
+    pub residual: Option<f64>,
+}
+
+/// A sweep that nothing joins to the others.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// Temperature in °C.
+    pub temperature_c: f64,
+    /// Smallest and largest storage modulus in MPa.
+    pub storage_mpa: [f64; 2],
 }
 
 /// A law through the shift factors.
@@ -94,7 +132,8 @@ pub struct Candidate {
 pub struct ReducedPoint {
     /// Number of its temperature among the shift factors; 0 without temperatures.
     pub sweep: usize,
-    /// The point, with its frequency multiplied by the shift factor.
+    /// The point, with its frequency multiplied by the shift factor and its moduli divided by the
+    /// vertical one.
     pub point: SweepPoint,
 }
 
@@ -111,6 +150,12 @@ pub struct MasterCurve {
     pub shifts: Vec<ShiftFactor>,
     /// Laws through them, the better one first.
     pub laws: Vec<FittedLaw>,
+    /// The vertical shift, if there is one.
+    pub vertical: Option<FittedVertical>,
+    /// Sweeps that nothing joins to the others.
+    pub left_out: Vec<LeftOut>,
+    /// Temperatures in °C of neighbours that E'' and tan δ have joined for want of common E'.
+    pub joined_by_loss_c: Vec<[f64; 2]>,
     /// Deviation from the measured moduli.
     pub misfit: Misfit,
     /// Measured frequencies at the reference temperature.
@@ -122,8 +167,9 @@ pub struct MasterCurve {
 }
 
 impl MasterCurve {
-    pub(super) fn new(sweeps: &[Sweep], fitted: &Fitted, candidates: Vec<Candidate>) -> Self {
+    pub(super) fn new(chain: &Chain, fitted: &Fitted, candidates: Vec<Candidate>) -> Self {
         let Fitted { problem, series, .. } = fitted;
+        let Chain { reference_c, .. } = *chain;
         let half_widths = half_widths(problem, series, fitted.rms);
         let estimate = |column: usize, logarithm: f64| Estimate {
             value: logarithm.exp(),
@@ -134,16 +180,19 @@ impl MasterCurve {
             modulus: estimate(1 + i, term[0]),
             relaxation_time: estimate(1 + problem.terms + i, term[1]),
         };
-        let reference_c = sweeps[problem.reference].temperature_c;
-        let shifts = shift_factors(sweeps, problem, series, &half_widths);
-        let points = reduced(sweeps, series);
+        let shifts = shift_factors(chain, problem, series, &half_widths);
+        let points = reduced(chain, series);
         let frequencies = || points.iter().map(|reduced| reduced.point.angular_frequency / TAU);
         Self {
             equilibrium_modulus: estimate(0, series.ln_equilibrium),
             terms: series.terms.iter().enumerate().map(term).collect(),
             laws: reference_c.map_or(Vec::new(), |reference| fit_laws(&shifts, reference)),
+            vertical: reference_c
+                .and_then(|reference| vertical(chain.vertical, &shifts, reference)),
             reference_c,
             shifts,
+            left_out: chain.left_out.clone(),
+            joined_by_loss_c: chain.joined_by_loss_c.clone(),
             misfit: misfit(problem, series),
             measured: FrequencyRange {
                 lowest_hz: frequencies().fold(f64::INFINITY, f64::min),
@@ -166,11 +215,14 @@ impl MasterCurve {
             branches: self.terms.iter().map(branch).collect(),
             poisson_ratio,
         };
-        let temperatures = || self.shifts.iter().map(|shift| shift.temperature_c);
+        let certain = || self.shifts.iter().filter(|shift| !shift.uncertain);
+        let temperatures = || certain().map(|shift| shift.temperature_c);
         let measured_c =
             [temperatures().fold(f64::INFINITY, f64::min), temperatures().fold(-300.0, f64::max)];
         let temperature = self.laws.first().zip(self.reference_c).map(|(fitted, reference_c)| {
-            TemperatureDependence { reference_c, law: fitted.law, measured_c: Some(measured_c) }
+            let vertical = self.vertical.map(|vertical| vertical.law);
+            let law = fitted.law;
+            TemperatureDependence { reference_c, law, measured_c: Some(measured_c), vertical }
         });
         RubberData { rubber, measured: Some(self.measured), temperature }
     }
@@ -195,25 +247,60 @@ fn half_widths(problem: &Prony, series: &Series, rms: f64) -> Vec<Option<f64>> {
 }
 
 fn shift_factors(
-    sweeps: &[Sweep],
+    chain: &Chain,
     problem: &Prony,
     series: &Series,
     half_widths: &[Option<f64>],
 ) -> Vec<ShiftFactor> {
-    if sweeps.len() < 2 {
-        return Vec::new();
+    if chain.sweeps.len() < 2 {
+        let given = chain.curve_factors.iter().map(|given| ShiftFactor {
+            temperature_c: given.temperature_c,
+            log10_shift: given.log10_shift,
+            confidence_95: None,
+            uncertain: false,
+            vertical: None,
+        });
+        return given.collect();
     }
+    let half_width = |column: Option<usize>| column.and_then(|column| half_widths[column]);
+    let vertical = |k: usize| match chain.vertical {
+        VerticalChoice::None => None,
+        VerticalChoice::RhoT { .. } => {
+            Some(VerticalFactor { factor: chain.ln_known_vertical(k).exp(), confidence_95: None })
+        }
+        VerticalChoice::Free => {
+            let ln = series.ln_verticals[k];
+            let interval = |half: f64| [(ln - half).exp(), (ln + half).exp()];
+            let confidence_95 = half_width(problem.vertical_index(k)).map(interval);
+            Some(VerticalFactor { factor: ln.exp(), confidence_95 })
+        }
+    };
     let factor = |(k, sweep): (usize, &Sweep)| {
         sweep.temperature_c.map(|temperature_c| ShiftFactor {
             temperature_c,
             log10_shift: series.ln_shifts[k] / LN_10,
-            confidence_95: problem
-                .shift_index(k)
-                .and_then(|column| half_widths[column])
-                .map(|half| half / LN_10),
+            confidence_95: half_width(problem.shift_index(k)).map(|half| half / LN_10),
+            uncertain: chain.uncertain[k],
+            vertical: vertical(k),
         })
     };
-    sweeps.iter().enumerate().filter_map(factor).collect()
+    chain.sweeps.iter().enumerate().filter_map(factor).collect()
+}
+
+/// The vertical shift of the rubber file.
+fn vertical(
+    choice: VerticalChoice,
+    shifts: &[ShiftFactor],
+    reference_c: f64,
+) -> Option<FittedVertical> {
+    match choice {
+        VerticalChoice::None => None,
+        VerticalChoice::RhoT { expansion_per_k } => {
+            let law = VerticalShift::RhoT { expansion_per_k };
+            Some(FittedVertical { law, confidence_95: None, residual: None })
+        }
+        VerticalChoice::Free => fit_vertical(shifts, reference_c),
+    }
 }
 
 fn misfit(problem: &Prony, series: &Series) -> Misfit {
@@ -233,13 +320,18 @@ fn misfit(problem: &Prony, series: &Series) -> Misfit {
     }
 }
 
-fn reduced(sweeps: &[Sweep], series: &Series) -> Vec<ReducedPoint> {
-    let sweeps = sweeps.iter().enumerate();
+fn reduced(chain: &Chain, series: &Series) -> Vec<ReducedPoint> {
+    let sweeps = chain.sweeps.iter().enumerate();
     let of_sweep = |(sweep, points): (usize, &Sweep)| {
         let factor = series.ln_shifts[sweep].exp();
+        let vertical = (series.ln_verticals[sweep] + chain.ln_known_vertical(sweep)).exp();
         let reduced = move |point: &SweepPoint| ReducedPoint {
             sweep,
-            point: SweepPoint { angular_frequency: point.angular_frequency * factor, ..*point },
+            point: SweepPoint {
+                angular_frequency: point.angular_frequency * factor,
+                storage_modulus: point.storage_modulus / vertical,
+                loss_modulus: point.loss_modulus / vertical,
+            },
         };
         points.points.iter().map(reduced).collect::<Vec<_>>()
     };

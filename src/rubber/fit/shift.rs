@@ -1,4 +1,4 @@
-//! First shift factors between sweeps, in closed form.
+//! First shift factors between sweeps.
 //!
 //! Of two sweeps at neighbouring temperatures, the range of storage moduli that both have is
 //! taken; the area between the two curves over it, divided by its height in ln E', is the
@@ -7,27 +7,101 @@
 //! ```text
 //! ln a_B - ln a_A = integral (ln ω_A(E') - ln ω_B(E')) d ln E' / (ln E'_high - ln E'_low)
 //! ```
+//!
+//! Neighbours without common storage moduli are joined by E'' and tan δ ([`join`](super::join)),
+//! those with free vertical factors by tan δ from the first.
 
-use super::{FitError, Sweep};
+use super::join::{best_place, ln_loss, ln_loss_factor, mean_difference};
+use super::{Sweep, SweepPoint};
+use std::ops::Range;
 
 /// Points of each of two sweeps that must lie in the moduli of the other.
 const LEAST_COMMON_POINTS: usize = 2;
+/// Change of ln E' over two sweeps that tells their shift: samples of one rubber differ by some
+/// per cent from clamping to clamping.
+const LEAST_CHANGE: f64 = 0.05;
 
-/// ln a of every sweep, sorted by temperature, relative to the reference.
-///
-/// # Errors
-/// [`FitError::NoOverlap`] of two neighbours.
-pub(super) fn first_shifts(sweeps: &[Sweep], reference: usize) -> Result<Vec<f64>, FitError> {
-    let mut shifts = vec![0.0];
-    for pair in sweeps.windows(2) {
-        let last = shifts[shifts.len() - 1];
-        shifts.push(last + pair_shift(&pair[0], &pair[1])?);
-    }
-    let offset = shifts[reference];
-    Ok(shifts.iter().map(|shift| shift - offset).collect())
+/// First shifts of all sweeps, sorted by temperature.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FirstShifts {
+    /// ln a of every sweep relative to the first one of its group.
+    pub ln_shifts: Vec<f64>,
+    /// ln b of every sweep, relative like these; 0 unless vertical factors are free.
+    pub ln_verticals: Vec<f64>,
+    /// The sweeps that hang together, in order.
+    pub groups: Vec<Range<usize>>,
+    /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
+    pub by_loss: Vec<usize>,
+    /// The colder one of each pair whose shift hardly shows: E' changes by less than it scatters,
+    /// and E'' and tan δ are flat.
+    pub uncertain: Vec<usize>,
 }
 
-fn pair_shift(colder: &Sweep, hotter: &Sweep) -> Result<f64, FitError> {
+/// Where the hotter of two neighbours belongs.
+struct Pair {
+    ln_shift: f64,
+    ln_vertical: f64,
+    by_loss: bool,
+    uncertain: bool,
+}
+
+/// Joins neighbours, and begins a new group where nothing joins them.
+pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts {
+    let mut first = FirstShifts {
+        ln_shifts: vec![0.0],
+        ln_verticals: vec![0.0],
+        groups: Vec::new(),
+        by_loss: Vec::new(),
+        uncertain: Vec::new(),
+    };
+    let mut start = 0;
+    for (k, pair) in sweeps.windows(2).enumerate() {
+        match joined(&pair[0], &pair[1], free_vertical) {
+            Some(pair) => {
+                first.ln_shifts.push(first.ln_shifts[k] + pair.ln_shift);
+                first.ln_verticals.push(first.ln_verticals[k] + pair.ln_vertical);
+                first.by_loss.extend(pair.by_loss.then_some(k));
+                first.uncertain.extend(pair.uncertain.then_some(k));
+            }
+            None => {
+                first.groups.push(start..k + 1);
+                start = k + 1;
+                first.ln_shifts.push(0.0);
+                first.ln_verticals.push(0.0);
+            }
+        }
+    }
+    first.groups.push(start..sweeps.len());
+    first
+}
+
+fn joined(colder: &Sweep, hotter: &Sweep, free_vertical: bool) -> Option<Pair> {
+    let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
+    let plain = |ln_shift| {
+        let uncertain = change(colder, hotter) < LEAST_CHANGE && by_loss().is_none();
+        Pair { ln_shift, ln_vertical: 0.0, by_loss: false, uncertain }
+    };
+    if free_vertical {
+        let Some(ln_shift) = best_place(colder, hotter, &[ln_loss_factor]) else {
+            return by_storage(colder, hotter).map(plain);
+        };
+        let ln_storage = |point: &SweepPoint| point.storage_modulus.ln();
+        let ln_vertical = mean_difference(colder, hotter, ln_shift, ln_storage)?;
+        return Some(Pair { ln_shift, ln_vertical, by_loss: false, uncertain: false });
+    }
+    by_storage(colder, hotter).map(plain).or_else(|| {
+        Some(Pair { ln_shift: by_loss()?, ln_vertical: 0.0, by_loss: true, uncertain: false })
+    })
+}
+
+/// By what ln E' changes over both sweeps.
+fn change(colder: &Sweep, hotter: &Sweep) -> f64 {
+    let moduli = || colder.points.iter().chain(&hotter.points).map(|point| point.storage_modulus);
+    (moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)).ln()
+}
+
+/// The shift by the area between the curves of E'; `None` without common moduli.
+fn by_storage(colder: &Sweep, hotter: &Sweep) -> Option<f64> {
     let curves = [rising(colder), rising(hotter)];
     let low = curves.iter().map(|curve| curve[0][1]).fold(f64::NEG_INFINITY, f64::max);
     let high = curves.iter().map(|curve| curve[curve.len() - 1][1]).fold(f64::INFINITY, f64::min);
@@ -36,15 +110,10 @@ fn pair_shift(colder: &Sweep, hotter: &Sweep) -> Result<f64, FitError> {
         sweep.points.iter().filter(|point| inside(point.storage_modulus)).count()
     };
     if high <= low || common(colder).min(common(hotter)) < LEAST_COMMON_POINTS {
-        return Err(FitError::NoOverlap {
-            colder_c: colder.temperature_c.unwrap_or(f64::NAN),
-            hotter_c: hotter.temperature_c.unwrap_or(f64::NAN),
-            colder_mpa: storage_range_mpa(colder),
-            hotter_mpa: storage_range_mpa(hotter),
-        });
+        return None;
     }
     let area = |curve: &[[f64; 2]]| integral(curve, low, high);
-    Ok((area(&curves[0]) - area(&curves[1])) / (high - low))
+    Some((area(&curves[0]) - area(&curves[1])) / (high - low))
 }
 
 /// ln ω and ln E' by ascending frequency; where noise lets E' fall, its running maximum.
@@ -71,11 +140,6 @@ fn integral(curve: &[[f64; 2]], low: f64, high: f64) -> f64 {
     curve.windows(2).map(piece).sum()
 }
 
-fn storage_range_mpa(sweep: &Sweep) -> [f64; 2] {
-    let moduli = || sweep.points.iter().map(|point| point.storage_modulus / 1e6);
-    [moduli().fold(f64::INFINITY, f64::min), moduli().fold(0.0, f64::max)]
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::SweepPoint;
@@ -94,17 +158,18 @@ mod tests {
     #[test]
     fn the_shift_of_straight_lines_is_exact() {
         let sweeps = [sweep(0.0, 50.0, -4..9), sweep(20.0, 1.0, -4..9), sweep(40.0, 0.1, -4..9)];
-        let shifts = first_shifts(&sweeps, 1).unwrap();
-        let expected = [50_f64.ln(), 0.0, 0.1_f64.ln()];
-        for (shift, expected) in shifts.iter().zip(expected) {
+        let first = first_shifts(&sweeps, false);
+        let expected = [0.0, -50_f64.ln(), (0.1_f64 / 50.0).ln()];
+        for (shift, expected) in first.ln_shifts.iter().zip(expected) {
             approx::assert_abs_diff_eq!(*shift, expected, epsilon = 1e-12);
         }
     }
 
     #[test]
-    fn sweeps_apart_are_named() {
-        let sweeps = [sweep(0.0, 1e4, 0..9), sweep(20.0, 1.0, 0..9)];
-        let message = first_shifts(&sweeps, 0).unwrap_err().to_string();
-        assert!(message.contains("0 °C") && message.contains("20 °C"), "{message}");
+    fn sweeps_apart_are_groups() {
+        let sweeps = [sweep(0.0, 1e4, 0..9), sweep(20.0, 1.0, 0..9), sweep(40.0, 0.5, 0..9)];
+        let first = first_shifts(&sweeps, false);
+        assert_eq!(first.groups, [0..1, 1..3]);
+        approx::assert_relative_eq!(first.ln_shifts[2], 0.5_f64.ln(), max_relative = 1e-9);
     }
 }

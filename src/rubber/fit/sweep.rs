@@ -43,13 +43,41 @@ impl ModulusKind {
     }
 }
 
-/// What the user decides about a fit.
+/// What is done about moduli that change with temperature beside the shift of the frequency.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum VerticalChoice {
+    /// Nothing: moduli are the same at all temperatures.
+    #[default]
+    None,
+    /// They grow with density times absolute temperature.
+    RhoT {
+        /// Volume expansion in 1/K.
+        expansion_per_k: f64,
+    },
+    /// A factor is fitted for every temperature.
+    Free,
+}
+
+/// A shift factor that is known from elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GivenShift {
+    /// Temperature in °C.
+    pub temperature_c: f64,
+    /// `log10 a_T` about any reference temperature, the same one for all.
+    pub log10_shift: f64,
+}
+
+/// What the user decides about a fit.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FitOptions {
     /// Number of terms; by the criterion if not given.
     pub terms: Option<usize>,
     /// Reference temperature in °C, one of the measured; the middle one if not given.
     pub reference_c: Option<f64>,
+    /// Vertical shift.
+    pub vertical: VerticalChoice,
+    /// Shift factors to take as they are; fitted if not given.
+    pub shift_factors: Option<Vec<GivenShift>>,
 }
 
 /// Why sweeps make no rubber.
@@ -96,8 +124,9 @@ pub enum FitError {
     /// Neighbouring temperatures without common moduli.
     #[error(
         "the sweeps at {colder_c} °C (storage modulus {:.4} to {:.4} MPa) and {hotter_c} °C ({:.4} to {:.4} MPa) \
-         have fewer than two points each in common moduli and cannot be shifted onto each other: measure at \
-         a temperature between them or over more frequencies, or fit them apart",
+         cannot be shifted onto each other: they have fewer than two points each in common storage moduli, and \
+         loss modulus and tan delta do not join them either. Measure at a temperature between them or over more \
+         frequencies, give shift factors that you know with --shift-factors, or fit them apart",
         .colder_mpa[0], .colder_mpa[1], .hotter_mpa[0], .hotter_mpa[1]
     )]
     NoOverlap {
@@ -121,6 +150,30 @@ pub enum FitError {
         /// Those of the sweeps in °C.
         measured_c: Vec<f64>,
     },
+    /// Shift factors are given, but not for every sweep.
+    #[error(
+        "there is no shift factor for the sweep at {temperature_c} °C among those given for [{}] °C: add it, or \
+         leave the sweep out",
+        .given_c.iter().map(|t| format!("{t}")).collect::<Vec<_>>().join(", ")
+    )]
+    NoShiftFactor {
+        /// Temperature of the sweep in °C.
+        temperature_c: f64,
+        /// Temperatures of the given factors in °C.
+        given_c: Vec<f64>,
+    },
+    /// Shift factors for a master curve without a temperature, none of them 1.
+    #[error(
+        "the moduli have no temperature and none of the shift factors is 1: give the temperature of the master \
+         curve with --reference-temperature-c"
+    )]
+    NoReference,
+    /// A vertical shift asks for absolute temperatures.
+    #[error(
+        "a vertical shift needs the temperatures of several sweeps: add the column temperature_c, or leave out \
+         --vertical-shift"
+    )]
+    VerticalWithoutTemperature,
     /// No number of terms, or not the wanted one, gives a rubber.
     #[error(
         "the sweeps have no fit{}: {reason}; give fewer terms, or data over a wider range",
@@ -143,6 +196,9 @@ impl HasKind for FitError {
             | Self::Temperatures
             | Self::TooFewPoints { .. }
             | Self::NoOverlap { .. }
+            | Self::NoShiftFactor { .. }
+            | Self::NoReference
+            | Self::VerticalWithoutTemperature
             | Self::Reference { .. } => ErrorKind::Input,
             Self::NoFit { .. } => ErrorKind::Failure,
         }

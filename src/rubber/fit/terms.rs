@@ -41,7 +41,7 @@ pub(super) struct Fitted {
     pub rms: f64,
 }
 
-/// Fits numbers of terms one after the other, up to the wanted one or until the criterion has its
+/// Fits numbers of terms one after the other from the shifts of a series without terms, up to the wanted one or until the criterion has its
 /// minimum.
 ///
 /// # Errors
@@ -49,20 +49,20 @@ pub(super) struct Fitted {
 pub(super) fn choose(
     data: &Prony,
     wanted: Option<usize>,
-    first: Vec<f64>,
+    mut previous: Series,
 ) -> Result<(Fitted, Vec<Candidate>), FitError> {
-    let most = most_terms(data, &first);
+    let most = most_terms(data, &previous.ln_shifts);
     if most == 0 || wanted.is_some_and(|wanted| wanted > most_determined(data)) {
-        let needed = (2 * wanted.unwrap_or(1) + data.sweeps + 2).div_ceil(2);
+        let needed = (2 * wanted.unwrap_or(1) + without_terms(data) + 2).div_ceil(2);
         return Err(FitError::TooFewPoints { points: data.data.len(), needed });
     }
+    let first = previous.clone();
     let mut candidates: Vec<Candidate> = Vec::new();
     let mut best: Option<(f64, Fitted)> = None;
-    let mut previous = Series { ln_equilibrium: 0.0, terms: Vec::new(), ln_shifts: first };
     let mut since_best = 0;
     for terms in 1..=wanted.unwrap_or(most) {
         let problem = Prony { terms, ..data.clone() };
-        let found = best_minimum(&problem, &previous);
+        let found = best_minimum(&problem, &previous, &first);
         let (candidate, fitted) = judge(problem, found, &mut previous);
         since_best += 1;
         if let (Some(fitted), Some(criterion)) = (fitted, candidate.bic) {
@@ -92,7 +92,12 @@ pub(super) fn choose(
 
 /// As many as leave a degree of freedom beside the variance.
 fn most_determined(data: &Prony) -> usize {
-    (2 * data.data.len()).saturating_sub(data.sweeps + 2) / 2
+    (2 * data.data.len()).saturating_sub(without_terms(data) + 2) / 2
+}
+
+/// Parameters of no term: equilibrium modulus and shifts.
+fn without_terms(data: &Prony) -> usize {
+    Prony { terms: 0, ..data.clone() }.parameters()
 }
 
 fn most_terms(data: &Prony, shifts: &[f64]) -> usize {
@@ -107,9 +112,11 @@ fn reduced_range(data: &Prony, shifts: &[f64]) -> [f64; 2] {
     [reduced().fold(f64::INFINITY, f64::min), reduced().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The better of two starts.
-fn best_minimum(problem: &Prony, previous: &Series) -> Option<Minimum> {
-    let spaced = spaced_start(problem, previous);
+/// The better of two starts. Few terms with free vertical factors move whole sweeps away from the
+/// others, so that evenly spaced times start from the first shifts again.
+fn best_minimum(problem: &Prony, previous: &Series, first: &Series) -> Option<Minimum> {
+    let shifts = if problem.free_verticals { first } else { previous };
+    let spaced = spaced_start(problem, shifts);
     let starts = [Some(spaced), inserted_start(problem, previous)];
     let ends = starts.iter().flatten().filter_map(|start| minimise(problem, problem.pack(start)));
     ends.min_by(|a, b| a.rms.total_cmp(&b.rms))
@@ -161,7 +168,7 @@ fn spaced_start(problem: &Prony, previous: &Series) -> Series {
     let [low, high] = reduced_range(problem, &previous.ln_shifts);
     let step = (high - low) / problem.terms as f64;
     let times: Vec<f64> = (0..problem.terms).map(|i| -low - (i as f64 + 0.5) * step).collect();
-    with_moduli(problem, &times, &previous.ln_shifts)
+    with_moduli(problem, &times, previous)
 }
 
 /// The previous terms and the one that goes with them best.
@@ -177,7 +184,7 @@ fn inserted_start(problem: &Prony, previous: &Series) -> Option<Series> {
         }
         let times: Vec<f64> =
             previous.terms.iter().map(|term| term[1]).chain(std::iter::once(time)).collect();
-        let start = with_moduli(problem, &times, &previous.ln_shifts);
+        let start = with_moduli(problem, &times, previous);
         Some((problem.residuals_of(&start).norm(), start))
     };
     let best = (0..trials).filter_map(trial).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -187,16 +194,18 @@ fn inserted_start(problem: &Prony, previous: &Series) -> Option<Series> {
 /// Positive moduli for given times that bring the relative misfit down: multiplicative updates
 /// `x <- x (A^T b) / (A^T A x)`, which never leave the positive numbers (Daube-Witherspoon &
 /// Muehllehner, IEEE Trans. Med. Imaging 5, 61, 1986, doi:10.1109/TMI.1986.4307748).
-fn with_moduli(problem: &Prony, ln_times: &[f64], ln_shifts: &[f64]) -> Series {
+fn with_moduli(problem: &Prony, ln_times: &[f64], previous: &Series) -> Series {
+    let Series { ln_shifts, ln_verticals, .. } = previous;
     let points = problem.data.len();
     let mut shares = DMatrix::zeros(2 * points, 1 + ln_times.len());
     for (j, datum) in problem.data.iter().enumerate() {
         let ln_frequency = datum.ln_frequency + ln_shifts[datum.sweep];
-        shares[(2 * j, 0)] = (-datum.ln_storage).exp();
+        let ln_vertical = ln_verticals[datum.sweep];
+        shares[(2 * j, 0)] = (ln_vertical - datum.ln_storage).exp();
         for (i, ln_time) in ln_times.iter().enumerate() {
             let [s, l] = weights(ln_frequency + ln_time);
-            shares[(2 * j, 1 + i)] = s * (-datum.ln_storage).exp();
-            shares[(2 * j + 1, 1 + i)] = l * (-datum.ln_loss).exp();
+            shares[(2 * j, 1 + i)] = s * (ln_vertical - datum.ln_storage).exp();
+            shares[(2 * j + 1, 1 + i)] = l * (ln_vertical - datum.ln_loss).exp();
         }
     }
     let normal = shares.tr_mul(&shares);
@@ -208,5 +217,10 @@ fn with_moduli(problem: &Prony, ln_times: &[f64], ln_shifts: &[f64]) -> Series {
         moduli.component_mul_assign(&wanted.component_div(&sums));
     }
     let terms = ln_times.iter().enumerate().map(|(i, time)| [moduli[1 + i].ln(), *time]).collect();
-    Series { ln_equilibrium: moduli[0].ln(), terms, ln_shifts: ln_shifts.to_vec() }
+    Series {
+        ln_equilibrium: moduli[0].ln(),
+        terms,
+        ln_shifts: ln_shifts.clone(),
+        ln_verticals: ln_verticals.clone(),
+    }
 }

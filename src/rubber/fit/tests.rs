@@ -15,7 +15,7 @@ fn three_terms() -> Rubber {
 }
 
 /// Standard normal deviate by Box & Muller.
-fn normal(random: &mut Pcg64) -> f64 {
+pub(super) fn normal(random: &mut Pcg64) -> f64 {
     let [a, b]: [f64; 2] = [random.random(), random.random()];
     (-2.0 * (1.0 - a).ln()).sqrt() * (TAU * b).cos()
 }
@@ -126,7 +126,8 @@ const TEMPERATURES: [f64; 7] = [-25.0, -15.0, -5.0, 5.0, 20.0, 40.0, 60.0];
 
 /// Two and a half decades at every temperature, as a laboratory's machine has them.
 fn sweeps(rubber: &Rubber, law: ShiftLaw, noise: f64, seed: u64) -> Vec<Sweep> {
-    let dependence = TemperatureDependence { reference_c: 20.0, law, measured_c: None };
+    let dependence =
+        TemperatureDependence { reference_c: 20.0, law, measured_c: None, vertical: None };
     let mut random = Pcg64::seed_from_u64(seed);
     let mut sweep_at = |temperature_c: f64| {
         let shifted = rubber.shifted(dependence.shift_factor(temperature_c).unwrap());
@@ -138,7 +139,7 @@ fn sweeps(rubber: &Rubber, law: ShiftLaw, noise: f64, seed: u64) -> Vec<Sweep> {
 }
 
 /// A rubber that relaxes over the whole of the master curve below.
-fn broad() -> Rubber {
+pub(super) fn broad() -> Rubber {
     let branch = |k: i32| MaxwellBranch {
         modulus: 4e6 * 1.9_f64.powi(k),
         relaxation_time: 10_f64.powf(1.5 - 1.25 * f64::from(k)),
@@ -150,7 +151,7 @@ fn broad() -> Rubber {
 fn a_known_wlf_law_is_found_again() {
     let (c1, c2_k) = (6.0, 110.0);
     let law = ShiftLaw::Wlf { c1, c2_k };
-    let options = FitOptions { reference_c: Some(20.0), terms: None };
+    let options = FitOptions { reference_c: Some(20.0), ..FitOptions::default() };
     let exact = fit_sweeps(&sweeps(&broad(), law, 0.0, 0), &options).unwrap();
     let ShiftLaw::Wlf { c1: found1, c2_k: found2 } = exact.laws[0].law else {
         panic!("{:?}", exact.laws)
@@ -174,7 +175,7 @@ fn a_known_wlf_law_is_found_again() {
 #[test]
 fn an_arrhenius_law_is_told_from_wlf() {
     let law = ShiftLaw::Arrhenius { activation_energy_kj_mol: 110.0 };
-    let options = FitOptions { reference_c: Some(20.0), terms: None };
+    let options = FitOptions { reference_c: Some(20.0), ..FitOptions::default() };
     let found = fit_sweeps(&sweeps(&broad(), law, 0.0, 0), &options).unwrap();
     let ShiftLaw::Arrhenius { activation_energy_kj_mol } = found.laws[0].law else {
         panic!("{:?}", found.laws)
@@ -187,7 +188,7 @@ fn another_reference_temperature_moves_the_times_only() {
     let law = ShiftLaw::Wlf { c1: 6.0, c2_k: 110.0 };
     let data = sweeps(&broad(), law, 0.0, 0);
     let at = |reference_c| {
-        let options = FitOptions { reference_c: Some(reference_c), terms: None };
+        let options = FitOptions { reference_c: Some(reference_c), ..FitOptions::default() };
         fit_sweeps(&data, &options).unwrap()
     };
     let moved = broad().shifted(10_f64.powf(law.log10_shift(-5.0, 20.0)));
@@ -196,7 +197,7 @@ fn another_reference_temperature_moves_the_times_only() {
     let ShiftLaw::Wlf { c1, c2_k } = at(-5.0).laws[0].law else { panic!() };
     assert_relative_eq!(c2_k, 85.0, max_relative = 1e-6);
     assert_relative_eq!(c1, 6.0 * 110.0 / 85.0, max_relative = 1e-6);
-    let options = FitOptions { reference_c: Some(0.0), terms: None };
+    let options = FitOptions { reference_c: Some(0.0), ..FitOptions::default() };
     let error = fit_sweeps(&data, &options).unwrap_err().to_string();
     assert!(error.contains("choose one of [-25, -15, -5, 5, 20, 40, 60] °C"), "{error}");
 }
@@ -205,10 +206,17 @@ fn another_reference_temperature_moves_the_times_only() {
 fn the_jacobian_is_that_of_differences() {
     let law = ShiftLaw::Wlf { c1: 6.0, c2_k: 110.0 };
     let data = sweeps(&broad(), law, 0.02, 0);
-    let first = shift::first_shifts(&data, 4).unwrap();
-    let problem = model::Prony { terms: 2, ..problem(&data, 4, &first) };
+    let options = FitOptions {
+        reference_c: Some(20.0),
+        vertical: VerticalChoice::Free,
+        ..FitOptions::default()
+    };
+    let chain = chain::joined(data, &options).unwrap();
+    let problem = model::Prony { terms: 2, ..problem(&chain) };
+    assert_eq!(problem.parameters(), 1 + 2 * 2 + 2 * 6);
     let terms = vec![[16.0, 0.5], [18.0, -LN_10]];
-    let series = model::Series { ln_equilibrium: 15.0, terms, ln_shifts: first };
+    let ln_verticals = vec![0.1; 7];
+    let series = model::Series { ln_equilibrium: 15.0, terms, ln_verticals, ..chain.start() };
     let at = problem.pack(&series);
     use least_squares::LeastSquares;
     let exact = problem.jacobian(&at);
@@ -282,9 +290,9 @@ fn bundled() -> std::path::PathBuf {
 #[test]
 fn the_bundled_sweeps_are_made_here_and_give_table_2_1() {
     assert_eq!(std::fs::read_to_string(bundled()).unwrap(), bundled_sweeps());
-    let sweeps = read_sweeps(&bundled(), 1.0).unwrap();
+    let sweeps = read_sweeps(&bundled(), &TableOptions::default(), 1.0).unwrap().sweeps;
     assert_eq!(sweeps.len(), 8);
-    let options = FitOptions { reference_c: Some(20.0), terms: None };
+    let options = FitOptions { reference_c: Some(20.0), ..FitOptions::default() };
     let found = fit_sweeps(&sweeps, &options).unwrap();
     // Ten times a standard error of the weakest term, noise over the root of the points it shows in.
     assert_recovered(&found, &Rubber::table_2_1(), 0.1);

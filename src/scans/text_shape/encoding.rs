@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 /// Label and text. Byte order marks and valid UTF-8 are certain; of the rest, CP949 is told by
 /// its Hangul, and Western European (latin1, windows-1252) is what remains.
-pub(super) fn decode(bytes: &[u8]) -> (&'static str, Cow<'_, str>) {
+pub(crate) fn decode(bytes: &[u8]) -> (&'static str, Cow<'_, str>) {
     if let Some((encoding, mark)) = Encoding::for_bom(bytes) {
         let (text, _) = encoding.decode_without_bom_handling(&bytes[mark..]);
         return (label(encoding), text);

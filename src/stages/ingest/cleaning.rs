@@ -1,6 +1,7 @@
 //! What was cleaned from the scans, for the people who decide on it.
 
 use super::{FaultRow, ScanReportRow, WindowRow};
+use crate::text::markdown_text;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -30,12 +31,12 @@ pub fn cleaning_markdown(
         if found.iter().any(|fault| fault.rms_slope_before.is_some()) {
             section(&mut text, scan, &found);
             if let Some(picture) = pictures.get(&scan.scan) {
-                let _ = write!(text, "\n![{}]({picture})\n", scan.scan);
+                let _ = write!(text, "\n![{}]({picture})\n", markdown_text(&scan.scan));
             }
         } else if scan.points_missing > 0 || !found.is_empty() {
             gappy_row(&mut gappy, scan, &found, pictures);
         } else {
-            clean.push(scan.scan.as_str());
+            clean.push(markdown_text(&scan.scan));
         }
     }
     if !gappy.is_empty() {
@@ -66,7 +67,7 @@ pub fn cleaning_markdown(
         windows.len()
     );
     for (window, reason) in rejected {
-        let _ = writeln!(text, "- {window}: {reason}");
+        let _ = writeln!(text, "- {}: {reason}", markdown_text(window));
     }
     text
 }
@@ -84,7 +85,7 @@ fn gappy_row(
     let _ = writeln!(
         text,
         "| {} | {} | {:.2} µm | {} ({:.1} %) | {} | {picture} |",
-        scan.scan,
+        markdown_text(&scan.scan),
         scan.points_read,
         scan.raw_spacing_um,
         scan.points_missing,
@@ -102,7 +103,10 @@ fn section(text: &mut String, scan: &ScanReportRow, faults: &[&FaultRow]) {
     let _ = write!(
         text,
         "\n## {}\n\n{} points, {:.2} µm apart; {} without a height in the file ({missing:.1} %).\n",
-        scan.scan, scan.points_read, scan.raw_spacing_um, scan.points_missing
+        markdown_text(&scan.scan),
+        scan.points_read,
+        scan.raw_spacing_um,
+        scan.points_missing
     );
     text.push_str(
         "\n| fault | found | share | decision | rms slope with, without | shortest waves without, \

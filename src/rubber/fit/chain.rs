@@ -1,0 +1,220 @@
+//! The sweeps that are fitted together, with what is known of their shifts beforehand.
+
+use super::model::Series;
+use super::result::LeftOut;
+use super::shift::first_shifts;
+use super::{FitError, FitOptions, GivenShift, SAME_TEMPERATURE_K, Sweep, VerticalChoice};
+use crate::rubber::VerticalShift;
+use std::f64::consts::LN_10;
+
+/// A `log10 a_T` that is that of the reference, but for rounding in a table.
+const NO_SHIFT_DECADES: f64 = 1e-6;
+
+/// Sweeps by ascending temperature that hang together.
+#[derive(Debug)]
+pub(super) struct Chain {
+    pub sweeps: Vec<Sweep>,
+    /// Number of the sweep at the reference temperature.
+    pub reference: usize,
+    /// Temperature of the reference in °C, if temperatures are known.
+    pub reference_c: Option<f64>,
+    /// ln a of every sweep, where the fit starts or, if `given`, what it takes.
+    pub ln_shifts: Vec<f64>,
+    /// ln b of every sweep, where the fit starts if they are free.
+    ln_verticals: Vec<f64>,
+    /// Whether the shifts are not to be fitted.
+    pub given: bool,
+    /// Given factors about the reference, of a master curve that has no temperature itself.
+    pub curve_factors: Vec<GivenShift>,
+    pub vertical: VerticalChoice,
+    /// Sweeps that nothing joins to these.
+    pub left_out: Vec<LeftOut>,
+    /// Temperatures of the pairs that E'' and tan δ have joined, in °C.
+    pub joined_by_loss_c: Vec<[f64; 2]>,
+    /// Whether a sweep lies behind a pair whose shift hardly shows, seen from the reference.
+    pub uncertain: Vec<bool>,
+}
+
+impl Chain {
+    /// ln b of a sweep that follows from the choice; 0 if it is fitted.
+    pub fn ln_known_vertical(&self, sweep: usize) -> f64 {
+        let temperature_c = self.sweeps[sweep].temperature_c;
+        let known = temperature_c.zip(self.reference_c).zip(known_vertical(self.vertical));
+        known.map_or(0.0, |((temperature_c, reference_c), shift)| {
+            shift.ln_factor(temperature_c, reference_c)
+        })
+    }
+
+    /// A series without terms, with the shifts from which the fit starts.
+    pub fn start(&self) -> Series {
+        Series {
+            ln_equilibrium: 0.0,
+            terms: Vec::new(),
+            ln_shifts: self.ln_shifts.clone(),
+            ln_verticals: self.ln_verticals.clone(),
+        }
+    }
+}
+
+fn known_vertical(vertical: VerticalChoice) -> Option<VerticalShift> {
+    match vertical {
+        VerticalChoice::RhoT { expansion_per_k } => Some(VerticalShift::RhoT { expansion_per_k }),
+        VerticalChoice::None | VerticalChoice::Free => None,
+    }
+}
+
+/// The sweeps that neighbours join to the reference, with the others left out.
+///
+/// # Errors
+/// [`FitError::Reference`]; [`FitError::NoOverlap`] if nothing is joined to the reference.
+pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, FitError> {
+    let wanted = options.reference_c.map(|wanted| nearest(&sweeps, wanted)).transpose()?;
+    let free = options.vertical == VerticalChoice::Free;
+    let first = first_shifts(&reduced(&sweeps, options.vertical), free);
+    let groups = || first.groups.iter().cloned();
+    let group = match wanted {
+        Some(wanted) => groups().find(|group| group.contains(&wanted)),
+        // Of equally long ones the coldest.
+        None => groups().rev().max_by_key(|group| group.len()),
+    };
+    let group = group.ok_or(FitError::Empty)?;
+    if group.len() == 1 && sweeps.len() > 1 {
+        let colder = if group.start > 0 { group.start - 1 } else { group.start };
+        return Err(no_overlap(&sweeps[colder], &sweeps[colder + 1]));
+    }
+    let reference = wanted.unwrap_or(group.start + (group.len() - 1) / 2);
+    let relative = |values: &[f64]| -> Vec<f64> {
+        values[group.clone()].iter().map(|value| value - values[reference]).collect()
+    };
+    let temperature = |k: usize| sweeps[k].temperature_c.unwrap_or(f64::NAN);
+    let between = |k: usize| if k < reference { k..reference } else { reference..k };
+    let uncertain = |k: usize| first.uncertain.iter().any(|pair| between(k).contains(pair));
+    let by_loss = first.by_loss.iter().filter(|k| group.contains(k));
+    let others = (0..sweeps.len()).filter(|k| !group.contains(k));
+    Ok(Chain {
+        reference: reference - group.start,
+        reference_c: sweeps[reference].temperature_c,
+        ln_shifts: relative(&first.ln_shifts),
+        ln_verticals: relative(&first.ln_verticals),
+        given: false,
+        curve_factors: Vec::new(),
+        vertical: options.vertical,
+        left_out: others
+            .map(|k| LeftOut {
+                temperature_c: temperature(k),
+                storage_mpa: storage_range_mpa(&sweeps[k]),
+            })
+            .collect(),
+        joined_by_loss_c: by_loss.map(|k| [temperature(*k), temperature(k + 1)]).collect(),
+        uncertain: group.clone().map(uncertain).collect(),
+        sweeps: sweeps[group].to_vec(),
+    })
+}
+
+/// All sweeps with shift factors that are taken as they are.
+///
+/// # Errors
+/// [`FitError::NoShiftFactor`], [`FitError::Reference`], [`FitError::NoReference`].
+pub(super) fn given(
+    sweeps: Vec<Sweep>,
+    given: &[GivenShift],
+    options: &FitOptions,
+) -> Result<Chain, FitError> {
+    let about = |reference: GivenShift| {
+        move |shift: &GivenShift| GivenShift {
+            log10_shift: shift.log10_shift - reference.log10_shift,
+            ..*shift
+        }
+    };
+    let mut chain = Chain {
+        reference: 0,
+        reference_c: None,
+        ln_shifts: vec![0.0; sweeps.len()],
+        ln_verticals: vec![0.0; sweeps.len()],
+        given: true,
+        curve_factors: Vec::new(),
+        vertical: options.vertical,
+        left_out: Vec::new(),
+        joined_by_loss_c: Vec::new(),
+        uncertain: vec![false; sweeps.len()],
+        sweeps,
+    };
+    if let [Sweep { temperature_c: None, .. }] = chain.sweeps[..] {
+        let reference = curve_reference(given, options.reference_c)?;
+        chain.reference_c = Some(reference.temperature_c);
+        chain.curve_factors = given.iter().map(about(reference)).collect();
+        return Ok(chain);
+    }
+    let wanted = options.reference_c.map(|wanted| nearest(&chain.sweeps, wanted)).transpose()?;
+    chain.reference = wanted.unwrap_or((chain.sweeps.len() - 1) / 2);
+    chain.reference_c = chain.sweeps[chain.reference].temperature_c;
+    let of = |sweep: &Sweep| factor(given, sweep.temperature_c.unwrap_or(f64::NAN));
+    let reference = of(&chain.sweeps[chain.reference])?;
+    let ln = |sweep: &Sweep| Ok(LN_10 * about(reference)(&of(sweep)?).log10_shift);
+    chain.ln_shifts = chain.sweeps.iter().map(ln).collect::<Result<_, FitError>>()?;
+    Ok(chain)
+}
+
+/// The factor at the temperature of a master curve: the wanted one, else the one that is 1.
+fn curve_reference(given: &[GivenShift], wanted: Option<f64>) -> Result<GivenShift, FitError> {
+    match wanted {
+        Some(wanted_c) => factor(given, wanted_c).map_err(|_| FitError::Reference {
+            wanted_c,
+            measured_c: given.iter().map(|shift| shift.temperature_c).collect(),
+        }),
+        None => given
+            .iter()
+            .find(|shift| shift.log10_shift.abs() < NO_SHIFT_DECADES)
+            .copied()
+            .ok_or(FitError::NoReference),
+    }
+}
+
+fn factor(given: &[GivenShift], temperature_c: f64) -> Result<GivenShift, FitError> {
+    let distance = |shift: &GivenShift| (shift.temperature_c - temperature_c).abs();
+    let nearest = given.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.filter(|shift| distance(shift) <= SAME_TEMPERATURE_K).copied().ok_or_else(|| {
+        let given_c = given.iter().map(|shift| shift.temperature_c).collect();
+        FitError::NoShiftFactor { temperature_c, given_c }
+    })
+}
+
+/// Number of the sweep at a temperature in °C.
+fn nearest(sweeps: &[Sweep], wanted_c: f64) -> Result<usize, FitError> {
+    let distance = |sweep: &Sweep| (sweep.temperature_c.unwrap_or(f64::NAN) - wanted_c).abs();
+    let nearest =
+        (0..sweeps.len()).min_by(|a, b| distance(&sweeps[*a]).total_cmp(&distance(&sweeps[*b])));
+    nearest.filter(|k| distance(&sweeps[*k]) <= SAME_TEMPERATURE_K).ok_or_else(|| {
+        let measured_c = sweeps.iter().filter_map(|sweep| sweep.temperature_c).collect();
+        FitError::Reference { wanted_c, measured_c }
+    })
+}
+
+/// The sweeps divided by the vertical factors that are known, about 0 °C: good enough to join
+/// them, before there is a reference.
+fn reduced(sweeps: &[Sweep], vertical: VerticalChoice) -> Vec<Sweep> {
+    let Some(shift) = known_vertical(vertical) else { return sweeps.to_vec() };
+    let mut sweeps = sweeps.to_vec();
+    for sweep in &mut sweeps {
+        let factor = shift.ln_factor(sweep.temperature_c.unwrap_or_default(), 0.0).exp();
+        for point in &mut sweep.points {
+            point.storage_modulus /= factor;
+            point.loss_modulus /= factor;
+        }
+    }
+    sweeps
+}
+
+fn no_overlap(colder: &Sweep, hotter: &Sweep) -> FitError {
+    FitError::NoOverlap {
+        colder_c: colder.temperature_c.unwrap_or(f64::NAN),
+        hotter_c: hotter.temperature_c.unwrap_or(f64::NAN),
+        colder_mpa: storage_range_mpa(colder),
+        hotter_mpa: storage_range_mpa(hotter),
+    }
+}
+
+fn storage_range_mpa(sweep: &Sweep) -> [f64; 2] {
+    let moduli = || sweep.points.iter().map(|point| point.storage_modulus / 1e6);
+    [moduli().fold(f64::INFINITY, f64::min), moduli().fold(0.0, f64::max)]
+}

@@ -1,0 +1,80 @@
+//! What in a rubber file is allowed and still looks like a mistake.
+
+use super::{MaxwellBranch, RubberData};
+
+/// A glass of rubber has some 3 GPa and steel 210: beyond this a modulus has another unit; in Pa.
+const STIFFEST: f64 = 1e11;
+/// Softer than any gel that holds its shape; in Pa.
+const SOFTEST: f64 = 1e2;
+/// No relaxation time is measured beyond it, in s; it would be some 300 000 years.
+const SLOWEST: f64 = 1e13;
+
+impl RubberData {
+    /// Warnings of numbers that no rubber has, as they stand in the file, with what to do.
+    pub fn oddities(&self) -> Vec<String> {
+        let rubber = &self.rubber;
+        let name = &rubber.name;
+        let mut oddities = Vec::new();
+        let equilibrium =
+            [("equilibrium_modulus_mpa".to_owned(), rubber.equilibrium_modulus)].into_iter();
+        let of_branch = |(k, branch): (usize, &MaxwellBranch)| {
+            (format!("modulus_mpa of branch {}", k + 1), branch.modulus)
+        };
+        let moduli: Vec<(String, f64)> =
+            equilibrium.chain(rubber.branches.iter().enumerate().map(of_branch)).collect();
+        if let Some((key, modulus)) = moduli.iter().find(|(_, modulus)| *modulus > STIFFEST) {
+            let mpa = modulus / 1e6;
+            oddities.push(format!(
+                "rubber {name}: {key} is {mpa}, which is {:e} GPa, and glassy rubber has some 3 GPa: if the number \
+                 is in Pa, write {}",
+                mpa / 1e3,
+                mpa / 1e6
+            ));
+        }
+        if rubber.glassy_modulus() < SOFTEST {
+            oddities.push(format!(
+                "rubber {name}: all moduli together are {} MPa, and soft rubber has some 0.1 MPa: check the unit, \
+                 moduli are in MPa",
+                rubber.glassy_modulus() / 1e6
+            ));
+        }
+        if rubber.branches.is_empty() {
+            oddities.push(format!(
+                "rubber {name} has no branches and is elastic: it dissipates nothing and its hysteretic friction \
+                 is 0; add [[branches]] with modulus_mpa and relaxation_time_s"
+            ));
+        }
+        let slow = rubber.branches.iter().position(|branch| branch.relaxation_time > SLOWEST);
+        if let Some(k) = slow {
+            oddities.push(format!(
+                "rubber {name}: relaxation_time_s of branch {} is {:e}, which no sweep measures: relaxation times \
+                 are in s",
+                k + 1,
+                rubber.branches[k].relaxation_time
+            ));
+        }
+        oddities
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rubber::Rubber;
+
+    fn oddities(rubber: Rubber) -> Vec<String> {
+        RubberData::from(rubber).oddities()
+    }
+
+    #[test]
+    fn other_units_and_missing_branches_are_told() {
+        assert_eq!(oddities(Rubber::table_2_1()), [""; 0]);
+        let in_pa = oddities(Rubber::table_2_1().scaled(1e6));
+        assert!(in_pa.len() == 1 && in_pa[0].contains("is 4170000, "), "{in_pa:?}");
+        assert!(in_pa[0].contains("write 4.17"), "{in_pa:?}");
+        let soft = oddities(Rubber::table_2_1().scaled(1e-9));
+        assert!(soft.len() == 1 && soft[0].contains("check the unit"), "{soft:?}");
+        let elastic = oddities(Rubber::elastic(4e6, 0.5));
+        assert!(elastic.len() == 1 && elastic[0].contains("has no branches"), "{elastic:?}");
+    }
+}
