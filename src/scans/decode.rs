@@ -64,26 +64,45 @@ pub(super) fn body_start(text: &str, format: &TextFormat) -> Result<usize, ScanP
     Err(ScanProblem::NoMarker { marker: marker.clone() })
 }
 
-/// Offset of the line after the one at `start`; a line ends with `\n`, `\r\n` or `\r`.
+/// Offset of the line after the one at `start`; a line ends with `\n`, `\r\n`, `\r\r\n` or `\r`.
 pub(super) fn next_line(text: &str, start: usize) -> usize {
     // Bytes: the search for characters is slower, and is called for every line.
-    match text.as_bytes()[start..].iter().position(|byte| matches!(byte, b'\n' | b'\r')) {
+    let rest = &text.as_bytes()[start..];
+    match rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) {
         None => text.len(),
-        Some(length) if text[start + length..].starts_with("\r\n") => start + length + 2,
-        Some(length) => start + length + 1,
+        Some(length) => start + length + line_end_length(&rest[length..]),
     }
+}
+
+/// Length of the line end at the start of `bytes`. Programs that write `\r\n` to a file in text
+/// mode leave `\r\r\n`, which is one line end and no blank line.
+fn line_end_length(bytes: &[u8]) -> usize {
+    ["\r\r\n", "\r\n"]
+        .iter()
+        .find(|end| bytes.starts_with(end.as_bytes()))
+        .map_or(1, |end| end.len())
+}
+
+/// The lines of a text without their ends.
+pub(super) fn lines(text: &str) -> impl Iterator<Item = &str> {
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        (start < text.len()).then(|| {
+            let next = next_line(text, start);
+            let line = text[start..next].trim_end_matches(['\r', '\n']);
+            start = next;
+            line
+        })
+    })
 }
 
 /// Number of the line, from 1, that ends at the offset `end` (with or without its line end).
 pub(super) fn line_number(text: &str, end: usize) -> usize {
     let read = &text[..end];
-    let line = ["\r\n", "\n", "\r"].iter().find_map(|mark| read.strip_suffix(mark));
+    let line = ["\r\r\n", "\r\n", "\n", "\r"].iter().find_map(|mark| read.strip_suffix(mark));
     count_line_ends(line.unwrap_or(read)) + 1
 }
 
 fn count_line_ends(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let lone_returns =
-        (0..bytes.len()).filter(|&i| bytes[i] == b'\r' && bytes.get(i + 1) != Some(&b'\n'));
-    lone_returns.count() + bytes.iter().filter(|&&byte| byte == b'\n').count()
+    lines(text).count() - usize::from(!text.is_empty() && !text.ends_with(['\r', '\n']))
 }

@@ -2,13 +2,17 @@
 //!
 //! Nothing is guessed. Files that state their units are told by their content and read natively
 //! ([`mod@file`]); of text files, units, columns and markers of missing points come from a description
-//! in the recipe, and what does not fit it is an error that names the line and the key to change.
+//! in the recipe (a sheet of a workbook is text to it: [`spreadsheet`]), and what does not fit it is an error that names the line and the key to change.
 //! [`text_shape`] looks at a text and proposes such a description.
 
+#[cfg(test)]
+mod cases;
 mod decode;
 pub mod description;
 pub mod error;
 pub mod file;
+mod lattice;
+pub mod spreadsheet;
 mod text;
 pub mod text_shape;
 mod thousands;
@@ -20,7 +24,7 @@ use std::path::Path;
 pub use description::TextFormat;
 pub use error::{ScanError, ScanProblem};
 pub use file::{FileError, FileProblem};
-pub use text::{parse_text, read_text};
+pub use text::{Described, parse_described, parse_text, read_described, read_text};
 
 /// Largest file that is read, in bytes: one is held in memory as a whole, beside its points. As
 /// text these are some 80 million points, 80 m of road in steps of 1 µm.

@@ -17,8 +17,9 @@ use crate::artifact::{
 };
 use crate::recipe::{Violation, demand};
 use crate::scans::file::{Grid, MapLines, parse_file};
+use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
-use crate::scans::{TextFormat, admit_size, parse_text, read_bytes};
+use crate::scans::{Described, TextFormat, admit_size, parse_described, read_bytes};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use faults::fault_rows;
 use picture::write_pictures;
@@ -38,7 +39,7 @@ pub struct Ingest {
     /// Scan files, and folders of which every file is a scan. Left out beside `sweep.specimens`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scans: Vec<PathBuf>,
-    /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD) are told
+    /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD ...) are told
     /// by their content and need no description.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<TextFormat>,
@@ -367,14 +368,7 @@ fn read_scans(
     const START: usize = 1 << 16;
     let name = file.path.display().to_string();
     if let Some(scan) = parse_file(&name, bytes).map_err(Box::new)? {
-        let lines = match (scan.grid, ingest.map_lines) {
-            (_, Some(lines)) => lines,
-            (Grid::Profile { .. }, None) => MapLines::Rows,
-            (Grid::Map { columns, rows, .. }, None) => {
-                return Err(StageError::MapLines { path: file.path.clone(), rows, columns });
-            }
-        };
-        let mut scans = scan.line_scans(&file.name, lines, ingest.map_line_step);
+        let mut scans = lines_of(ingest, file, &scan)?;
         if ingest.invert_instrument_heights {
             let heights = scans.iter_mut().flat_map(|scan| &mut scan.heights);
             heights.for_each(|height| *height = -*height);
@@ -384,11 +378,31 @@ fn read_scans(
     let Some(format) = &ingest.text else {
         return Err(StageError::NoTextFormat { path: file.path.clone() });
     };
-    let mut scan = parse_text(&name, bytes, format)?;
-    scan.name.clone_from(&file.name);
-    let shape = TextShape::of(&bytes[..bytes.len().min(START)]);
+    let scans = match parse_described(&name, bytes, format)? {
+        Described::Line(scan) => vec![RawScan { name: file.name.clone(), ..scan }],
+        Described::Map(map) => lines_of(ingest, file, &map)?,
+    };
+    // The directory of a workbook is at its end.
+    let start = if is_workbook(bytes) { bytes.len() } else { bytes.len().min(START) };
+    let shape = TextShape::of(&bytes[..start]);
     let contradictions = shape.map(|shape| shape.contradictions(format)).unwrap_or_default();
-    Ok(ReadFile { scans: vec![scan], is_text: true, contradictions })
+    Ok(ReadFile { scans, is_text: true, contradictions })
+}
+
+/// A profile, or the chosen lines of a height map.
+fn lines_of(
+    ingest: &Ingest,
+    file: &ScanFile,
+    scan: &crate::scans::file::ScanFile,
+) -> Result<Vec<RawScan>, StageError> {
+    let lines = match (scan.grid, ingest.map_lines) {
+        (_, Some(lines)) => lines,
+        (Grid::Profile { .. }, None) => MapLines::Rows,
+        (Grid::Map { columns, rows, .. }, None) => {
+            return Err(StageError::MapLines { path: file.path.clone(), rows, columns });
+        }
+    };
+    Ok(scan.line_scans(&file.name, lines, ingest.map_line_step))
 }
 
 fn check_equal_grids<'a>(

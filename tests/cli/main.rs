@@ -9,6 +9,7 @@ mod bench;
 mod campaign;
 mod files;
 mod inspect;
+mod laboratory;
 mod report;
 mod rubber;
 mod solve;

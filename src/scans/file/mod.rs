@@ -7,6 +7,9 @@
 //! | Digital Surf | `.sur` and `.pro`, compressed or not | manual of the software |
 //! | ERD | longitudinal road profile, text | ERD file specification, UMTRI |
 //! | Gwyddion text | height map as text with its size and unit | manual of the software |
+//! | Wyko ASCII | height map as text with its pixel and wavelength | as Gwyddion reads it |
+//! | OpenCRG | grid of a road, text or binary | ASAM OpenCRG 1.2 |
+//! | SMATS | profile as XML | NIST surface metrology data base |
 //!
 //! The format is told by the content; the name of the file does not matter. Every size that a
 //! file declares is compared with what the file holds before memory is asked for.
@@ -15,23 +18,32 @@ mod bytes;
 mod digital_surf;
 mod erd;
 pub mod error;
+mod foreign;
 mod gwyddion;
+mod opencrg;
 mod sdf;
 mod sdf_write;
+mod smats;
 #[cfg(test)]
 mod tests;
+mod wyko_ascii;
 mod x3p;
 
 pub use error::{FileError, FileProblem, Place};
+pub use foreign::foreign;
 pub use sdf_write::write as write_sdf;
 pub use x3p::write as write_x3p;
 
+use crate::scans::spreadsheet::is_workbook;
 use crate::surface::RawScan;
 use error::unexpected;
 use std::path::Path;
 
 /// Largest number of points of a file, 2 GB of heights in memory.
 pub const LARGEST_POINTS: u64 = 1 << 28;
+
+/// First bytes by which a family is told.
+pub const DETECTED_BY: usize = 1 << 16;
 
 /// Family of instrument files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +58,12 @@ pub enum Family {
     Erd,
     /// Image as text from Gwyddion.
     Gwyddion,
+    /// Height map as text of an interferometer.
+    WykoAscii,
+    /// Curved regular grid of a road.
+    OpenCrg,
+    /// Profile as XML of the data base SMATS.
+    Smats,
 }
 
 impl Family {
@@ -62,6 +80,12 @@ impl Family {
             Some(Self::Erd)
         } else if gwyddion::is_header(text) {
             Some(Self::Gwyddion)
+        } else if wyko_ascii::is_signature(text) {
+            Some(Self::WykoAscii)
+        } else if opencrg::is_header(text) {
+            Some(Self::OpenCrg)
+        } else if smats::is_header(&text[..text.len().min(DETECTED_BY)]) {
+            Some(Self::Smats)
         } else {
             None
         }
@@ -210,22 +234,36 @@ pub fn read_file(path: &Path) -> Result<Option<ScanFile>, FileError> {
     parse_file("", &bytes).map_err(|error| error.in_file(path))
 }
 
-/// Reads the bytes of an instrument file; `None` if they are of none of the families.
+/// Reads the bytes of an instrument file; `None` if they are of none of the families: text, or a
+/// workbook, which a description goes with.
 ///
 /// # Errors
-/// [`FileError`] that tells of the file as `name`.
+/// [`FileError`] that tells of the file as `name`; files of kinds that are known and not read are
+/// named with the way out ([`FileProblem::Foreign`]).
 pub fn parse_file(name: &str, bytes: &[u8]) -> Result<Option<ScanFile>, FileError> {
-    let Some(family) = Family::detect(bytes) else { return Ok(None) };
+    let failed = |problem| FileError { file: name.to_owned(), problem };
+    let Some(family) = Family::detect(bytes) else {
+        return foreign(bytes).map_or(Ok(None), |problem| Err(failed(problem)));
+    };
+    if family == Family::X3p {
+        if is_workbook(bytes) {
+            return Ok(None);
+        }
+        if let Some(problem) = foreign::foreign_archive(bytes) {
+            return Err(failed(problem));
+        }
+    }
     let read = match family {
         Family::Sdf => sdf::read(bytes),
         Family::X3p => x3p::read(bytes),
         Family::DigitalSurf => digital_surf::read(bytes),
         Family::Erd => erd::read(bytes),
         Family::Gwyddion => gwyddion::read(bytes),
+        Family::WykoAscii => wyko_ascii::read(bytes),
+        Family::OpenCrg => opencrg::read(bytes),
+        Family::Smats => smats::read(bytes),
     };
-    read.and_then(ScanFile::checked)
-        .map(Some)
-        .map_err(|problem| FileError { file: name.to_owned(), problem })
+    read.and_then(ScanFile::checked).map(Some).map_err(failed)
 }
 
 /// Shape of `rows` times `columns` points: one row is a profile.

@@ -63,8 +63,9 @@ impl<'a> Rows<'a> {
     pub(super) fn follows_blank_line(&self) -> bool {
         let (before, record) = self.text.split_at(self.start);
         let record = &record[..self.end - self.start];
-        // The reader may have left the second half of `\r\n` to this record.
-        let rest = record.strip_prefix('\n').filter(|_| before.ends_with('\r')).unwrap_or(record);
+        // The reader may have left the rest of `\r\n` or `\r\r\n` to this record.
+        let rest = record.strip_prefix("\r\n").or_else(|| record.strip_prefix('\n'));
+        let rest = rest.filter(|_| before.ends_with('\r')).unwrap_or(record);
         let mut at = 0;
         while at < rest.len() {
             let next = next_line(rest, at);
