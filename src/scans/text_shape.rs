@@ -316,12 +316,12 @@ fn map_columns(body: &Body, width: usize) -> Option<(usize, usize)> {
     }
     let columns: Vec<Vec<f64>> =
         (0..width.min(LAST)).map(|number| body.column(number).collect()).collect();
-    let pairs = (0..columns.len()).flat_map(|x| (x + 1..columns.len()).map(move |y| (x, y)));
+    let mut pairs = (0..columns.len()).flat_map(|x| (x + 1..columns.len()).map(move |y| (x, y)));
     let is_map = |(x, y): &(usize, usize)| {
         let lattice = Lattice::of(&columns[*x], &columns[*y]);
         lattice.is_ok_and(|lattice| lattice.columns.saturating_mul(lattice.rows) <= 4 * body.rows())
     };
-    pairs.filter(|pair| is_map(pair)).next()
+    pairs.find(is_map)
 }
 
 /// Whether numbers are positions, of which some may be there two or three times.

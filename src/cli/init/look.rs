@@ -40,7 +40,10 @@ impl Look {
                 CliError::input(format!("cannot read {}: {error}", file.display()))
             })?;
             let read = match parse_file(&file.display().to_string(), &bytes) {
-                Ok(Some(scan)) => Ok(look.take_grid(&scan)),
+                Ok(Some(scan)) => {
+                    look.take_grid(&scan);
+                    Ok(())
+                }
                 Ok(None) => look.text(file, &bytes, &mut format, &name),
                 Err(error) => Err(error.to_string()),
             };

@@ -90,7 +90,7 @@ fn wrapped_double_and_binary_rows_of_opencrg_are_the_same_grid() {
     };
     let binary = |bytes: usize| -> Vec<u8> {
         let mut numbers: Vec<f64> = rows.concat();
-        while numbers.len() * bytes % 80 != 0 {
+        while !(numbers.len() * bytes).is_multiple_of(80) {
             numbers.push(f64::NAN);
         }
         let each = |z: &f64| match bytes {
