@@ -8,8 +8,8 @@ use clap::Args;
 use super::CliError;
 use super::inspect::{ScanOptions, read_instrument};
 use super::output::{print, write_file};
+use crate::scans::Described;
 use crate::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
-use crate::scans::read_text;
 use crate::surface::RawScan;
 
 /// Positions that are further than this share of the spacing from equal spacing are information
@@ -26,8 +26,8 @@ Examples:
 
 /// Convert a scan to X3P (ISO 25178-72), SDF (ISO 25178-71) or CSV.
 ///
-/// FILE is an instrument file (SDF, X3P, Digital Surf, ERD, Gwyddion text), told by its content, or text described
-/// by the options of `inspect`. The new format is told by the name: .x3p (64-bit binary heights, MD5
+/// FILE is an instrument file (SDF, X3P, Digital Surf, ERD, OpenCRG, Wyko ASCII, Gwyddion text), told by its content, or
+/// text or a sheet of a workbook (.xlsx) described by the options of `inspect`. The new format is told by the name: .x3p (64-bit binary heights, MD5
 /// checksums, mask of missing points), .sdf (text, BAD where missing) or .csv (x_m, for maps y_m, and z_m; empty where missing).
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -83,31 +83,32 @@ impl Convert {
         Ok(native)
     }
 
-    fn text(&self) -> Result<RawScan, CliError> {
-        let format = self.scan.format().map_err(|needed| {
+    fn read(&self) -> Result<Described, CliError> {
+        if let Some(scan) = self.native()? {
+            return Ok(Described::Map(scan));
+        }
+        self.scan.format().map_err(|needed| {
             CliError::input(format!(
                 "{} is no instrument file; to read it as text, give {needed} as well",
                 self.file.display()
             ))
         })?;
-        Ok(read_text(&self.file, &format)?)
+        self.scan.read(&self.file)
     }
 
     fn on_grid(&self) -> Result<ScanFile, CliError> {
-        match self.native()? {
-            Some(scan) => Ok(scan),
-            None => equally_spaced(&self.file, self.text()?),
+        match self.read()? {
+            Described::Map(scan) => Ok(scan),
+            Described::Line(scan) => equally_spaced(&self.file, scan),
         }
     }
 
     /// What writes the CSV file.
     fn csv(&self) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()> + use<>, CliError> {
-        let native = self.native()?;
-        let text = if native.is_none() { Some(self.text()?) } else { None };
-        Ok(move |out: &mut dyn Write| match (native, text) {
-            (Some(scan), _) => write_grid(&scan, out),
-            (None, Some(scan)) => write_points(&scan.positions, &scan.heights, out),
-            (None, None) => Ok(()),
+        let read = self.read()?;
+        Ok(move |out: &mut dyn Write| match read {
+            Described::Map(scan) => write_grid(&scan, out),
+            Described::Line(scan) => write_points(&scan.positions, &scan.heights, out),
         })
     }
 }

@@ -159,3 +159,35 @@ impl<R: Read> Read for Utf8<R> {
         Ok(length)
     }
 }
+
+/// The lines of a text without their ends.
+pub(super) fn lines(text: &str) -> impl Iterator<Item = &str> {
+    let mut start = 0;
+    std::iter::from_fn(move || {
+        (start < text.len()).then(|| {
+            let next = next_line(text, start);
+            let line = text[start..next].trim_end_matches(['\r', '\n']);
+            start = next;
+            line
+        })
+    })
+}
+
+/// Offset of the line after the one at `start`; a line ends with `\n`, `\r\n`, `\r\r\n` or `\r`.
+fn next_line(text: &str, start: usize) -> usize {
+    // Bytes: the search for characters is slower, and is called for every line.
+    let rest = &text.as_bytes()[start..];
+    match rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) {
+        None => text.len(),
+        Some(length) => start + length + line_end_length(&rest[length..]),
+    }
+}
+
+/// Length of the line end at the start of `bytes`. Programs that write `\r\n` to a file in text
+/// mode leave `\r\r\n`, which is one line end and no blank line.
+fn line_end_length(bytes: &[u8]) -> usize {
+    ["\r\r\n", "\r\n"]
+        .iter()
+        .find(|end| bytes.starts_with(end.as_bytes()))
+        .map_or(1, |end| end.len())
+}

@@ -4,13 +4,17 @@ use crate::scans::ScanProblem;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How a text file holds a line scan: one line per point, positions and heights in columns.
+/// How a text file, or a sheet of a workbook (.xlsx), holds a line scan or a height map: one line per
+/// point, positions and heights in columns.
 ///
 /// The file is read in this order: `encoding`, `skip_lines`, `skip_until`, column names, points,
-/// cuts.
+/// cuts. Cells of a sheet are cells already: `separator` and `encoding` do nothing there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TextFormat {
+    /// Sheet of a workbook, by name or by number (the first is 1, which is the default).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sheet: Option<Column>,
     /// What stands between the cells: `tab`, `comma`, `semicolon`, `whitespace` (any run of
     /// blanks) or any single ASCII character.
     pub separator: Separator,
@@ -40,6 +44,14 @@ pub struct TextFormat {
     /// Unit of the positions: `nm`, `um`, `mm` or `m`. Required with `x_column`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x_unit: Option<LengthUnit>,
+    /// Column of the positions across the lines of a height map, by name or by number (the first is
+    /// 1). The points are then a grid, sorted by rows or by columns, of which some may be left out;
+    /// `ingest.map_lines` takes lines of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_column: Option<Column>,
+    /// Unit of the positions across the lines: `nm`, `um`, `mm` or `m`. Required with `y_column`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_unit: Option<LengthUnit>,
     /// Column of the heights, by name or by number (the first is 1).
     pub z_column: Column,
     /// Unit of the heights: `nm`, `um`, `mm` or `m`. Required.
@@ -162,6 +174,30 @@ impl TextFormat {
         Ok(())
     }
 
+    fn validate_map(&self) -> Result<(), ScanProblem> {
+        if self.y_column.is_none() {
+            return match self.y_unit {
+                None => Ok(()),
+                Some(_) => Err(description("y_unit", "goes with y_column, which is not set")),
+            };
+        }
+        if self.x_column.is_none() {
+            return Err(description("y_column", "needs x_column: a height map has both positions"));
+        }
+        if self.y_unit.is_none() {
+            return Err(missing_unit("y_unit"));
+        }
+        let cuts = [("cut_start_mm", self.cut_start_mm), ("cut_end_mm", self.cut_end_mm)];
+        match cuts.into_iter().find(|(_, length)| *length != 0.0) {
+            None => Ok(()),
+            Some((key, length)) => {
+                let reason =
+                    format!("is {length} mm, and is for line scans; leave it out beside y_column");
+                Err(description(key, reason))
+            }
+        }
+    }
+
     fn validate_columns(&self) -> Result<(), ScanProblem> {
         match (&self.x_column, self.x_spacing_um) {
             (Some(_), Some(_)) => {
@@ -185,14 +221,18 @@ impl TextFormat {
             (Some(_), None) if self.x_unit.is_none() => return Err(missing_unit("x_unit")),
             _ => {}
         }
-        for (key, column) in
-            [("x_column", self.x_column.as_ref()), ("z_column", Some(&self.z_column))]
-        {
+        self.validate_map()?;
+        for (key, column) in [
+            ("x_column", self.x_column.as_ref()),
+            ("y_column", self.y_column.as_ref()),
+            ("z_column", Some(&self.z_column)),
+            ("sheet", self.sheet.as_ref()),
+        ] {
             match column {
                 Some(Column::Number(0)) => {
-                    return Err(description(key, "is 0; the first column is number 1"));
+                    return Err(description(key, "is 0; the first is number 1"));
                 }
-                Some(Column::Name(name)) if !self.header => {
+                Some(Column::Name(name)) if !self.header && key != "sheet" => {
                     let reason = format!("is the name `{name}`, but header = false; give a number");
                     return Err(description(key, reason));
                 }

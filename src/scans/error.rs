@@ -101,7 +101,7 @@ pub enum ScanProblem {
     )]
     Infinite { text: String },
     #[error(
-        "the position {text} comes after {previous}; check `x_column`, sort the file by position, or cut it where the track turns back"
+        "the position {text} comes after {previous}; check `x_column`, sort the file by position, cut it where the track turns back, or describe a height map by `y_column` as well"
     )]
     NotIncreasing { text: String, previous: String },
     #[error(
@@ -120,6 +120,24 @@ pub enum ScanProblem {
     AllCut { length_mm: f64, cut_mm: f64 },
     #[error("points {} mm apart are no scan of texture (1e-6 to 10 mm); check `{key}`", brief(*spacing_mm))]
     AbsurdSpacing { spacing_mm: f64, key: &'static str },
+    #[error(
+        "half of all neighbouring points are steeper than {} to 1 (the track would be {} mm long): a unit is wrong; \
+         check `x_unit` (or `x_spacing_um`) and `z_unit`",
+        slope.round(), brief(*length_mm)
+    )]
+    Steep { slope: f64, length_mm: f64 },
+    #[error(
+        "{percent:.0} % of the points are at the position of the point before: this is a height map (describe the column \
+         of the other position by `y_column` and `y_unit`), or the positions have too few digits (give `x_spacing_um` in \
+         place of `x_column`)"
+    )]
+    Repeated { percent: f64 },
+    #[error("{problem}")]
+    Grid { problem: String },
+    #[error("{reason}; save the sheet as CSV and describe that")]
+    Workbook { reason: String },
+    #[error("there is no sheet `{wanted}` (key `sheet`); the sheets are {present}")]
+    NoSheet { wanted: String, present: String },
     #[error(
         "heights from {} m to {} m are no road; check `z_unit`, or list a marker of missing points in `missing`",
         brief(*lowest_m), brief(*highest_m)

@@ -16,7 +16,7 @@ pub(super) enum LineError {
     TooLong(usize),
 }
 
-/// Splits a stream into lines, which end with `\n`, `\r\n` or `\r`, or into words between blanks.
+/// Splits a stream into lines, which end with `\n`, `\r\n`, `\r\r\n` or `\r`, or into words between blanks.
 pub(super) struct Lines<R> {
     reader: R,
     chunk: Vec<u8>,
@@ -123,26 +123,49 @@ impl<R: Read> Lines<R> {
     fn fill(&mut self) -> Result<bool, LineError> {
         loop {
             if self.at == self.chunk.len() {
-                self.chunk.resize(CHUNK, 0);
-                let read = loop {
-                    match self.reader.read(&mut self.chunk) {
-                        Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                        other => break other,
-                    }
-                };
-                self.chunk.truncate(*read.as_ref().unwrap_or(&0));
+                self.chunk.clear();
                 self.at = 0;
-                if read.map_err(LineError::Io)? == 0 {
+                if !self.read_on()? {
                     return Ok(false);
                 }
             }
-            // The second half of `\r\n`.
-            if std::mem::take(&mut self.after_return) && self.chunk[self.at] == b'\n' {
-                self.at += 1;
+            // The rest of `\r\n`, or of `\r\r\n`, which programs leave that write `\r\n` in text mode.
+            if std::mem::take(&mut self.after_return) {
+                let byte = self.chunk[self.at];
+                let rest = match byte {
+                    b'\n' => 1,
+                    b'\r' if self.byte_after()? == Some(b'\n') => 2,
+                    _ => return Ok(true),
+                };
+                self.at += rest;
                 continue;
             }
             return Ok(true);
         }
+    }
+
+    /// The byte behind the first unread one, which stays unread; none at the end of the file.
+    fn byte_after(&mut self) -> Result<Option<u8>, LineError> {
+        if self.at + 1 == self.chunk.len() {
+            self.chunk.drain(..self.at);
+            self.at = 0;
+            self.read_on()?;
+        }
+        Ok(self.chunk.get(self.at + 1).copied())
+    }
+
+    /// Appends to the chunk what the reader gives; false at the end.
+    fn read_on(&mut self) -> Result<bool, LineError> {
+        let before = self.chunk.len();
+        self.chunk.resize(before + CHUNK, 0);
+        let read = loop {
+            match self.reader.read(&mut self.chunk[before..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                other => break other,
+            }
+        };
+        self.chunk.truncate(before + *read.as_ref().unwrap_or(&0));
+        Ok(read.map_err(LineError::Io)? > 0)
     }
 }
 
@@ -172,14 +195,21 @@ mod tests {
     }
 
     #[test]
-    fn lines_end_in_three_ways_wherever_the_chunks_end() {
-        let text = b"a\nb\r\n\rc\r\r\nd";
-        let expected: Vec<_> =
-            [("a", true), ("b", true), ("", true), ("c", true), ("", true), ("d", false)]
-                .into_iter()
-                .enumerate()
-                .map(|(i, (line, ended))| (i + 1, line.to_owned(), ended))
-                .collect();
+    fn lines_end_in_four_ways_wherever_the_chunks_end() {
+        let text = b"a\nb\r\n\rc\r\r\nd\r\re";
+        let expected: Vec<_> = [
+            ("a", true),
+            ("b", true),
+            ("", true),
+            ("c", true),
+            ("d", true),
+            ("", true),
+            ("e", false),
+        ]
+        .into_iter()
+        .enumerate()
+        .map(|(i, (line, ended))| (i + 1, line.to_owned(), ended))
+        .collect();
         assert_eq!(all(Lines::new(text.as_slice())), expected);
         assert_eq!(all(Lines::new(Slow(text))), expected);
         assert_eq!(all(Lines::new(&b""[..])), []);

@@ -2,16 +2,20 @@
 //!
 //! Nothing is guessed. Files that state their units are told by their content and read natively
 //! ([`mod@file`]); of text files, units, columns and markers of missing points come from a description
-//! in the recipe, and what does not fit it is an error that names the line and the key to change.
+//! in the recipe (a sheet of a workbook is text to it: [`spreadsheet`]), and what does not fit it is an error that names the line and the key to change.
 //! [`text_shape`] looks at a text and proposes such a description.
 
+#[cfg(test)]
+mod cases;
 mod decode;
 pub mod description;
 pub mod error;
 pub mod file;
 mod last_number;
+mod lattice;
 mod lines;
 mod source;
+pub mod spreadsheet;
 mod text;
 pub mod text_shape;
 pub(crate) mod thousands;
@@ -25,7 +29,7 @@ pub use description::TextFormat;
 pub use error::{ScanError, ScanProblem};
 pub use file::{FileError, FileProblem};
 pub use source::Source;
-pub use text::{parse_text, read_source, read_text};
+pub use text::{Described, parse_described, parse_text, read_described, read_source, read_text};
 
 /// Largest file of which all bytes are in memory, in bytes: X3P, whose directory is at its end,
 /// texts of Gwyddion, whose spacing follows from the number of rows, and what is described or

@@ -71,6 +71,19 @@ impl<'a> Source<'a> {
         start.chain(self.rest)
     }
 
+    /// The same bytes; of an archive, whose directory is at its end, all are the start then.
+    ///
+    /// # Errors
+    /// As [`Source::whole`].
+    pub(crate) fn with_directory(self) -> io::Result<Self> {
+        if !self.start.starts_with(b"PK\x03\x04") {
+            return Ok(self);
+        }
+        let start = self.whole()?;
+        let length = start.len() as u64;
+        Ok(Self { start, rest: Box::new(io::empty()), length })
+    }
+
     /// All bytes in memory.
     ///
     /// # Errors

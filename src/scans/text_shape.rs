@@ -1,26 +1,40 @@
-//! What a text file looks like, and the description that would read it.
+//! What a text file or the sheet of a workbook looks like, and the description that would read it.
 //!
 //! Encoding, separator, decimal mark, header and columns are found from the content, units only
 //! where the file states them. Nothing is read by this: it is a proposal for the recipe.
 
 pub(crate) mod encoding;
+mod layout;
 mod missing;
+mod names;
+mod proposal;
 #[cfg(test)]
 mod tests;
 
+pub use proposal::{separator_text, unit_name};
+
 use crate::scans::TextFormat;
-use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator, default_missing};
+use crate::scans::decode::lines;
+use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use crate::scans::lattice::Lattice;
+use crate::scans::spreadsheet::{Book, is_workbook};
 use crate::scans::thousands::thousands_mark;
-use csv::ReaderBuilder;
+use layout::{Body, Layout};
 pub use missing::{RepeatedHeight, repeated_inside};
-use std::fmt::Write;
+use names::{comment_of, is_comment, marker, regrouped, states_unit, unit_in, unit_of_two};
 
 /// Lines by which separator, decimal mark and columns are found; more say nothing new.
 const MOST_LINES: usize = 2000;
+/// Sheets of a workbook that are looked at.
+const MOST_SHEETS: usize = 50;
+/// Columns that a table of positions and heights has at most where they have no names.
+const MOST_NAMELESS: usize = 12;
 
 /// What a text file looks like.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextShape {
+    /// Sheet of a workbook, where it is not the first.
+    pub sheet: Option<String>,
     /// Label of the encoding, for `encoding`.
     pub encoding: &'static str,
     /// What stands between the cells.
@@ -33,12 +47,14 @@ pub struct TextShape {
     pub skip_lines: usize,
     /// The line before the names of the columns, if it marks the start of the data.
     pub skip_until: Option<String>,
-    /// Whether the columns have names.
+    /// Whether a line of names stands before the points.
     pub header: bool,
-    /// The columns.
+    /// The columns; empty ones at the end of the lines are left out.
     pub columns: Vec<TextColumn>,
     /// Lines of points.
     pub rows: usize,
+    /// Columns of x and y, from 0, where the points are those of a height map.
+    pub map: Option<(usize, usize)>,
     /// Cells that seem to mark a missing height, beyond those that do without being listed: words,
     /// numbers that repeat at the end of the range and far from all other heights, and numbers within
     /// the range that repeat much more often than all others.
@@ -47,6 +63,9 @@ pub struct TextShape {
     pub stated: Vec<String>,
     /// A cell whose thousands are separated, which the reader refuses.
     pub thousands: Option<String>,
+    /// Whether the reader takes the names apart as they are here: between blanks a name of two
+    /// words is two.
+    names_are_cells: bool,
 }
 
 /// A column of a text file.
@@ -58,28 +77,57 @@ pub struct TextColumn {
     pub unit: Option<LengthUnit>,
     /// Whether its numbers grow from line to line, or stay in no more than two thirds of them.
     pub grows: bool,
+    /// Whether it has no number at all.
+    pub empty: bool,
 }
 
 impl TextShape {
     /// Looks at the bytes of a file; `None` where no two lines of numbers follow each other.
     pub fn of(bytes: &[u8]) -> Option<Self> {
+        if is_workbook(bytes) {
+            return Self::of_workbook(bytes);
+        }
         let (encoding, text) = encoding::decode(bytes);
-        let lines: Vec<&str> = text.lines().collect();
-        let start = &lines[..lines.len().min(MOST_LINES)];
         const SEPARATORS: [Separator; 4] =
             [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Whitespace];
-        let layouts = SEPARATORS.iter().flat_map(|separator| {
+        Self::of_text(encoding, &text, &SEPARATORS)
+    }
+
+    fn of_text(encoding: &'static str, text: &str, separators: &[Separator]) -> Option<Self> {
+        let start: Vec<&str> = lines(text).take(MOST_LINES).collect();
+        let layouts = separators.iter().flat_map(|separator| {
             [DecimalMark::Point, DecimalMark::Comma]
                 .map(|mark| Layout { separator: *separator, mark })
         });
         // The first of equals: more lines of points, then more columns.
         let (layout, mut body) = layouts
             .filter(|layout| layout.is_possible())
-            .filter_map(|layout| Some((layout, layout.body(start)?)))
-            .rev_max_by_key(|(_, body)| (body.rows.len(), body.rows[0].len(), !body.thousands))?;
-        layout.go_back(&mut body, start);
-        layout.extend(&mut body, &lines);
-        Some(describe(encoding, layout, &body, &lines))
+            .filter_map(|layout| Some((layout, layout.body(&start)?)))
+            .rev_max_by_key(|(_, body)| (body.rows(), body.width, !body.thousands))?;
+        layout.go_back(&mut body, &start);
+        layout.extend(&mut body, lines(text));
+        Some(describe(encoding, layout, &body, text, &start[..body.start]))
+    }
+
+    /// The sheet of the most points; numbers in cells have whichever decimal mark the texts have.
+    fn of_workbook(bytes: &[u8]) -> Option<Self> {
+        let mut book = Book::open(bytes).ok()?;
+        let mut best: Option<Self> = None;
+        for (index, name) in book.sheets().into_iter().enumerate().take(MOST_SHEETS) {
+            for mark in [DecimalMark::Point, DecimalMark::Comma] {
+                let number = Column::Number(index + 1);
+                let text = book.text(Some(&number), mark).unwrap_or_default();
+                let shape = Self::of_text("utf-8", &text, &[Separator::Tab]);
+                let Some(shape) = shape.filter(|shape| shape.decimal_mark == mark) else {
+                    continue;
+                };
+                if best.as_ref().is_none_or(|best| shape.rows > best.rows) {
+                    let sheet = (index > 0).then(|| name.clone());
+                    best = Some(Self { sheet, ..shape });
+                }
+            }
+        }
+        best
     }
 
     /// Where the description states another unit than the column it names, in words.
@@ -91,305 +139,63 @@ impl TextShape {
             }
             Column::Number(_) => None,
         };
-        let contradiction = |key, named: &Column, unit: Option<LengthUnit>| {
-            let (column, unit) = (column(named)?, unit?);
+        let contradiction = |key, named: Option<&Column>, unit: Option<LengthUnit>| {
+            let (column, unit) = (column(named?)?, unit?);
             let stated = column.unit.filter(|stated| *stated != unit)?;
-            let (stated, unit) = (unit_name(stated), unit_name(unit));
+            let (stated, unit) = (proposal::unit_name(stated), proposal::unit_name(unit));
             Some(format!(
                 "the column `{}` states {stated}, the description {key} = \"{unit}\"",
                 column.name
             ))
         };
-        let x = format.x_column.as_ref();
-        let x = x.and_then(|column| contradiction("x_unit", column, format.x_unit));
-        x.into_iter().chain(contradiction("z_unit", &format.z_column, format.z_unit)).collect()
+        let keys = [
+            contradiction("x_unit", format.x_column.as_ref(), format.x_unit),
+            contradiction("y_unit", format.y_column.as_ref(), format.y_unit),
+            contradiction("z_unit", Some(&format.z_column), format.z_unit),
+        ];
+        keys.into_iter().flatten().collect()
     }
 
-    /// The proposed description.
-    ///
-    /// # Errors
-    /// The keys that the file does not state a value of.
-    pub fn format(&self) -> Result<TextFormat, Vec<&'static str>> {
-        let (x, z) = self.proposed_columns();
-        let unit = |number: usize| self.columns[number].unit;
-        let unstated: Vec<&str> = [
-            ("x_spacing_um", x.is_none()),
-            ("x_unit", x.is_some_and(|x| unit(x).is_none())),
-            ("z_unit", unit(z).is_none()),
-        ]
-        .into_iter()
-        .filter_map(|(key, absent)| absent.then_some(key))
-        .collect();
-        if !unstated.is_empty() {
-            return Err(unstated);
-        }
-        Ok(TextFormat {
-            separator: self.separator,
-            decimal_mark: self.decimal_mark,
-            comment: self.comment,
-            skip_lines: if self.skip_until.is_some() { 0 } else { self.skip_lines },
-            skip_until: self.skip_until.clone(),
-            header: self.header,
-            x_column: x.map(|x| self.column(x)),
-            x_spacing_um: None,
-            x_unit: x.and_then(unit),
-            z_column: self.column(z),
-            z_unit: unit(z),
-            invert_z: false,
-            missing: default_missing().into_iter().chain(self.missing.clone()).collect(),
-            encoding: self.encoding.into(),
-            cut_start_mm: 0.0,
-            cut_end_mm: 0.0,
-        })
-    }
-
-    /// The section `[ingest.text]` of a recipe that would read the file; what the file does not
-    /// say stands there as a comment that asks for it.
-    pub fn recipe_section(&self) -> String {
-        let mut text = String::from("[ingest.text]\n");
-        let mut line = |line: String| {
-            // Writing to a text does not fail.
-            let _ = writeln!(text, "{line}");
-        };
-        line(format!("separator = {}", separator_text(self.separator)));
-        if self.decimal_mark == DecimalMark::Comma {
-            line("decimal_mark = \",\"".into());
-        }
-        if let Some(comment) = self.comment {
-            line(format!("comment = {:?}", comment.to_string()));
-        }
-        match &self.skip_until {
-            Some(marker) => line(format!("skip_until = {}", quoted(marker))),
-            None if self.skip_lines > 0 => line(format!("skip_lines = {}", self.skip_lines)),
-            None => {}
-        }
-        if !self.header {
-            line("header = false".into());
-        }
-        let (x, z) = self.proposed_columns();
-        match x {
-            Some(x) => {
-                line(format!("x_column = {}", self.column_text(x)));
-                line(unit_text("x_unit", self.columns[x].unit));
-            }
-            None => {
-                line("# x_spacing_um = ?            # the file does not say it by column".into())
-            }
-        }
-        line(format!("z_column = {}", self.column_text(z)));
-        line(unit_text("z_unit", self.columns[z].unit));
-        if !self.missing.is_empty() {
-            let marks = default_missing().into_iter().chain(self.missing.clone());
-            let marks: Vec<String> = marks.map(|mark| quoted(&mark)).collect();
-            line(format!("missing = [{}]", marks.join(", ")));
-        }
-        if self.encoding != "utf-8" {
-            line(format!("encoding = \"{}\"", self.encoding));
-        }
-        text
+    /// Whether the lines are rows of a height map: many numbers without names, or three and more of
+    /// which none is a position.
+    pub fn is_matrix(&self) -> bool {
+        let columns = self.columns.len();
+        let nameless = self.columns.iter().all(|column| column.name.is_empty());
+        let positions = self.columns.iter().any(|column| column.grows) || self.map.is_some();
+        !self.header && nameless && (columns > MOST_NAMELESS || (columns > 2 && !positions))
     }
 
     /// Numbers, from 0, of the columns of positions and heights: positions grow, heights are the
-    /// last column that does not, and columns with a unit come before those without.
+    /// last column that does not, and columns with a unit come before those without. Of a map both
+    /// columns of positions are known, and heights are the last of the others.
     pub fn proposed_columns(&self) -> (Option<usize>, usize) {
+        let written = |i: &usize| !self.columns[*i].empty;
+        let with_unit = |i: &&usize| self.columns[**i].unit.is_some();
+        let last_of =
+            |others: &[usize]| others.iter().rev().find(with_unit).or(others.last()).copied();
+        if let Some((x, y)) = self.map {
+            let others: Vec<usize> =
+                (0..self.columns.len()).filter(|i| ![x, y].contains(i)).filter(written).collect();
+            return (Some(x), last_of(&others).unwrap_or(self.columns.len() - 1));
+        }
         let growing: Vec<usize> =
             (0..self.columns.len()).filter(|&i| self.columns[i].grows).collect();
-        let with_unit = |i: &&usize| self.columns[**i].unit.is_some();
         let x = match self.columns.len() {
             1 => None,
             _ => growing.iter().find(with_unit).or(growing.first()).copied(),
         };
-        let others: Vec<usize> =
-            (0..self.columns.len()).filter(|i| Some(*i) != x && !growing.contains(i)).collect();
-        let z = others.iter().rev().find(with_unit).or(others.last()).copied();
+        let others: Vec<usize> = (0..self.columns.len())
+            .filter(|i| Some(*i) != x && !growing.contains(i))
+            .filter(written)
+            .collect();
         let last = self.columns.len() - 1;
-        (x, z.unwrap_or(if x == Some(last) { 0 } else { last }))
+        (x, last_of(&others).unwrap_or(if x == Some(last) { 0 } else { last }))
     }
 
-    /// A column by its name, by its number where that tells it better.
-    fn column(&self, number: usize) -> Column {
-        let name = &self.columns[number].name;
-        let unique = self.columns.iter().filter(|column| column.name == *name).count() == 1;
-        if self.header && unique && !name.is_empty() {
-            Column::Name(name.clone())
-        } else {
-            Column::Number(number + 1)
-        }
+    /// Number, from 0, of the column of the positions across the lines of a map.
+    pub fn proposed_y(&self) -> Option<usize> {
+        self.map.map(|(_, y)| y)
     }
-
-    fn column_text(&self, number: usize) -> String {
-        match self.column(number) {
-            Column::Name(name) => quoted(&name),
-            Column::Number(number) => number.to_string(),
-        }
-    }
-}
-
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
-}
-
-/// A unit as the recipe writes it.
-pub fn unit_name(unit: LengthUnit) -> &'static str {
-    match unit {
-        LengthUnit::Nm => "nm",
-        LengthUnit::Um => "um",
-        LengthUnit::Mm => "mm",
-        LengthUnit::M => "m",
-    }
-}
-
-fn unit_text(key: &str, unit: Option<LengthUnit>) -> String {
-    match unit {
-        Some(unit) => format!("{key} = \"{}\"", unit_name(unit)),
-        None => {
-            format!("# {key} = ?                  # the column does not state it: nm, um, mm or m")
-        }
-    }
-}
-
-/// A separator as the recipe writes it.
-pub fn separator_text(separator: Separator) -> &'static str {
-    match separator {
-        Separator::Tab => "\"tab\"",
-        Separator::Comma => "\"comma\"",
-        Separator::Semicolon => "\"semicolon\"",
-        Separator::Whitespace | Separator::Character(_) => "\"whitespace\"",
-    }
-}
-
-/// A way to take lines apart.
-#[derive(Debug, Clone, Copy)]
-struct Layout {
-    separator: Separator,
-    mark: DecimalMark,
-}
-
-/// Lines of points.
-struct Body {
-    /// Place of the first, from 0.
-    start: usize,
-    /// Numbers of each line, NaN where missing.
-    rows: Vec<Vec<f64>>,
-    /// Whether thousands are separated in one of them.
-    thousands: bool,
-}
-
-impl Body {
-    fn at(start: usize) -> Self {
-        Self { start, rows: Vec::new(), thousands: false }
-    }
-}
-
-impl Layout {
-    fn is_possible(self) -> bool {
-        (self.separator, self.mark) != (Separator::Comma, DecimalMark::Comma)
-    }
-
-    fn cells(self, line: &str) -> Vec<String> {
-        let Some(separator) = self.separator.character() else {
-            return line.split_whitespace().map(str::to_owned).collect();
-        };
-        if !line.contains('"') {
-            return line.split(separator).map(|cell| cell.trim().to_owned()).collect();
-        }
-        let mut reader = ReaderBuilder::new()
-            .delimiter(separator as u8)
-            .has_headers(false)
-            .from_reader(line.as_bytes());
-        let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
-        record.iter().map(|cell| cell.trim().to_owned()).collect()
-    }
-
-    fn numbers(self, line: &str) -> Option<Vec<f64>> {
-        let cells = self.cells(line);
-        let numbers: Vec<f64> =
-            cells.iter().map(|cell| self.number(cell)).collect::<Option<_>>()?;
-        // A line of heights only may hold a word for a missing one; elsewhere words are names.
-        let is_point = numbers.iter().any(|number| number.is_finite())
-            || (cells.len() == 1 && !cells[0].is_empty());
-        is_point.then_some(numbers)
-    }
-
-    /// The numbers of a line beside others of `width` cells: at least half of its cells are
-    /// numbers, the first among them, and the others are marks that are not known. Footers and
-    /// names begin with a word.
-    fn marked_numbers(self, line: &str, width: usize) -> Option<Vec<f64>> {
-        let cells = self.cells(line);
-        let numbers: Vec<Option<f64>> = cells.iter().map(|cell| self.number(cell)).collect();
-        let known = numbers.iter().flatten().filter(|number| number.is_finite()).count();
-        let is_point = cells.len() == width
-            && numbers.first().is_some_and(Option::is_some)
-            && known > 0
-            && 2 * known >= width;
-        is_point.then(|| numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
-    }
-
-    fn has_thousands(self, line: &str) -> bool {
-        self.cells(line).iter().any(|cell| thousands_mark(cell, self.mark).is_some())
-    }
-
-    fn number(self, cell: &str) -> Option<f64> {
-        if missing::is_word(cell) {
-            return Some(f64::NAN);
-        }
-        let parsed: Option<f64> = match self.mark {
-            DecimalMark::Point => cell.parse().ok(),
-            DecimalMark::Comma if cell.contains('.') => None,
-            DecimalMark::Comma => cell.replacen(',', ".", 1).parse().ok(),
-        };
-        let number = parsed.or_else(|| {
-            let mark = thousands_mark(cell, self.mark)?;
-            self.number(&cell.replace(mark, ""))
-        });
-        number.filter(|number| number.is_finite())
-    }
-
-    /// Goes on with the points where the first lines end.
-    fn extend(self, body: &mut Body, lines: &[&str]) {
-        let width = body.rows[0].len();
-        let next = body.start + body.rows.len();
-        let points = |line: &&str| self.numbers(line).or_else(|| self.marked_numbers(line, width));
-        let further = lines.iter().skip(next).map_while(points);
-        body.rows.extend(further.take_while(|row| row.len() == width));
-    }
-
-    /// Takes in lines right before the points whose height is marked by a word that is not known.
-    fn go_back(self, body: &mut Body, lines: &[&str]) {
-        let width = body.rows[0].len();
-        let before = lines[..body.start].iter().rev();
-        let marked: Vec<_> = before.map_while(|line| self.marked_numbers(line, width)).collect();
-        body.start -= marked.len();
-        body.rows.splice(..0, marked.into_iter().rev());
-    }
-
-    /// The longest run of lines of equally many numbers.
-    fn body(self, lines: &[&str]) -> Option<Body> {
-        let (mut longest, mut current) = (Body::at(0), Body::at(0));
-        for (index, line) in lines.iter().enumerate() {
-            let width = current.rows.first().map(Vec::len);
-            let marked = || width.and_then(|width| self.marked_numbers(line, width));
-            match self.numbers(line).or_else(marked) {
-                Some(row) if width == Some(row.len()) => {
-                    current.rows.push(row);
-                }
-                Some(row) if row.iter().any(|number| number.is_finite()) => {
-                    let next = Body { rows: vec![row], ..Body::at(index) };
-                    longest = longer(longest, std::mem::replace(&mut current, next));
-                }
-                _ => {
-                    let none = Body::at(index);
-                    longest = longer(longest, std::mem::replace(&mut current, none));
-                }
-            }
-            current.thousands |= !current.rows.is_empty() && self.has_thousands(line);
-        }
-        Some(longer(longest, current)).filter(|body| body.rows.len() > 1)
-    }
-}
-
-fn longer(first: Body, second: Body) -> Body {
-    if second.rows.len() > first.rows.len() { second } else { first }
 }
 
 /// The first of the greatest elements; that of the standard library is the last.
@@ -401,21 +207,54 @@ trait FirstMax: Iterator + Sized {
 
 impl<I: Iterator> FirstMax for I {}
 
-fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str]) -> TextShape {
-    let width = body.rows[0].len();
-    let before = &lines[..body.start];
-    let names = before.last().filter(|line| !line.trim().is_empty()).map(|line| layout.cells(line));
+/// Names of the columns, and whether they are a line of their own that the reader reads alike.
+struct Names {
+    names: Vec<String>,
+    header: bool,
+    are_cells: bool,
+}
+
+impl Names {
+    fn of(before: &[&str], layout: Layout, comment: Option<char>, width: usize) -> Self {
+        let none = Self { names: Vec::new(), header: false, are_cells: false };
+        let Some(line) = before.last().filter(|line| !line.trim().is_empty()) else { return none };
+        let blanks = layout.separator == Separator::Whitespace;
+        let fits =
+            |names: &Vec<String>| if blanks { names.len() == width } else { names.len() >= width };
+        if is_comment(line, comment) {
+            // Names behind a comment mark are read by nobody, but tell the units.
+            let text = line.trim_start().trim_start_matches(|c| Some(c) == comment);
+            let names = Some(regrouped(layout.cells(text))).filter(|names| names.len() == width);
+            return Self { names: names.unwrap_or_default(), ..none };
+        }
+        let cells = layout.cells(line);
+        if fits(&cells) {
+            return Self { names: cells, header: true, are_cells: true };
+        }
+        if !blanks || cells.len() < width {
+            return none;
+        }
+        let names = Some(regrouped(cells)).filter(fits).unwrap_or_default();
+        Self { names, header: true, are_cells: false }
+    }
+}
+
+fn describe(
+    encoding: &'static str,
+    layout: Layout,
+    body: &Body,
+    text: &str,
+    before: &[&str],
+) -> TextShape {
+    // A separator at the end of the lines makes a column without a number.
+    let written = |number: &usize| body.column(*number).any(f64::is_finite);
+    let width = (0..body.width).rev().find(written).map_or(body.width, |last| last + 1);
     let comment = comment_of(before);
-    let named = names.filter(|names| {
-        names.len() >= width && !before.last().is_some_and(|l| is_comment(l, comment))
-    });
-    // A separator at the end of the line makes an empty column.
-    let header = named.is_some();
-    let names = named.unwrap_or_default();
+    let Names { names, header, are_cells } = Names::of(before, layout, comment, width);
     let preamble = &before[..before.len() - usize::from(header)];
     let commented = comment.is_some() && preamble.iter().all(|line| is_comment(line, comment));
-    let marker = preamble.last().map(|line| line.trim());
-    let skip_until = marker.filter(|line| !commented && is_marker(line)).map(str::to_owned);
+    let skip_until =
+        if commented { None } else { marker(preamble, |line: &str| layout.cells(line)) };
     let above = preamble.last().filter(|line| header && !is_comment(line, comment));
     let above = above
         .map(|line| layout.cells(line))
@@ -423,15 +262,17 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
         .unwrap_or_default();
     let column = |number: usize| {
         let name = names.get(number).cloned().unwrap_or_default();
-        let values: Vec<f64> = body.rows.iter().map(|row| row[number]).collect();
+        let values: Vec<f64> = body.column(number).collect();
         TextColumn {
             unit: unit_in(&name)
                 .or_else(|| unit_of_two(above.get(number).map_or("", String::as_str), &name)),
             grows: grows(&values),
+            empty: !values.iter().any(|value| value.is_finite()),
             name,
         }
     };
     let shape = TextShape {
+        sheet: None,
         encoding,
         separator: layout.separator,
         decimal_mark: layout.mark,
@@ -440,7 +281,8 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
         skip_until,
         header,
         columns: (0..width).map(column).collect(),
-        rows: body.rows.len(),
+        rows: body.rows(),
+        map: map_columns(body, width),
         stated: preamble
             .iter()
             .filter(|line| states_unit(line))
@@ -448,73 +290,47 @@ fn describe(encoding: &'static str, layout: Layout, body: &Body, lines: &[&str])
             .collect(),
         missing: Vec::new(),
         thousands: None,
+        names_are_cells: are_cells,
     };
+    with_marks(shape, layout, body, text)
+}
+
+/// Adds what the cells of the points say: marks of missing heights, separated thousands.
+fn with_marks(shape: TextShape, layout: Layout, body: &Body, text: &str) -> TextShape {
     let (_, z) = shape.proposed_columns();
-    let numbers: Vec<f64> = body.rows.iter().map(|row| row[z]).collect();
-    let points = &lines[body.start..body.start + body.rows.len()];
-    let heights = || points.iter().filter_map(|line| layout.cells(line).into_iter().nth(z));
+    let points = || lines(text).skip(body.start).take(body.rows());
+    let heights = points().filter_map(|line| layout.cells(line).into_iter().nth(z));
     let is_word = |cell: &String| layout.number(cell).is_none_or(f64::is_nan);
-    let mut missing = missing::words(heights().filter(is_word));
+    let mut missing = missing::words(heights.filter(is_word));
+    let numbers: Vec<f64> = body.column(z).collect();
     let far = missing::numbers(&numbers);
     let inside = repeated_inside(&numbers).into_iter().map(|mark| mark.height);
     let inside: Vec<f64> = inside.filter(|mark| !far.contains(mark)).collect();
     missing.extend(far.into_iter().chain(inside).map(missing::mark_text));
-    let mut cells = points.iter().take(MOST_LINES).flat_map(|line| layout.cells(line));
+    let mut cells = points().take(MOST_LINES).flat_map(|line| layout.cells(line));
     let thousands = cells.find(|cell| thousands_mark(cell, layout.mark).is_some());
     TextShape { missing, thousands, ..shape }
+}
+
+/// The first two columns that are the positions of a map, where a third is left for its heights.
+fn map_columns(body: &Body, width: usize) -> Option<(usize, usize)> {
+    /// Positions stand among the first columns.
+    const LAST: usize = 4;
+    if width < 3 {
+        return None;
+    }
+    let columns: Vec<Vec<f64>> =
+        (0..width.min(LAST)).map(|number| body.column(number).collect()).collect();
+    let mut pairs = (0..columns.len()).flat_map(|x| (x + 1..columns.len()).map(move |y| (x, y)));
+    let is_map = |(x, y): &(usize, usize)| {
+        let lattice = Lattice::of(&columns[*x], &columns[*y]);
+        lattice.is_ok_and(|lattice| lattice.columns.saturating_mul(lattice.rows) <= 4 * body.rows())
+    };
+    pairs.find(is_map)
 }
 
 /// Whether numbers are positions, of which some may be there two or three times.
 fn grows(values: &[f64]) -> bool {
     let steps = values.windows(2).filter(|pair| pair[1] > pair[0]).count();
     3 * steps >= values.len() - 1 && values.windows(2).all(|pair| pair[1] >= pair[0])
-}
-
-fn comment_of(preamble: &[&str]) -> Option<char> {
-    let first = preamble.iter().find_map(|line| line.trim_start().chars().next())?;
-    ['#', '%', '!', ';'].contains(&first).then_some(first)
-}
-
-fn is_comment(line: &str, comment: Option<char>) -> bool {
-    line.trim().is_empty() || comment.is_some_and(|comment| line.trim_start().starts_with(comment))
-}
-
-/// Whether a line before the data is a mark such as `*****DATA*****` or `[Data]`.
-fn is_marker(line: &str) -> bool {
-    let ends = |c: char| "*[]-=<>#:".contains(c);
-    line.starts_with(ends) && line.ends_with(ends) && line.chars().any(char::is_alphabetic)
-}
-
-/// The unit in a name: `x (mm)`, `z [µm]`, `x_mm`, `Depth mm`.
-fn unit_in(name: &str) -> Option<LengthUnit> {
-    let parts: Vec<&str> =
-        name.split(|c: char| "()[]{}/_, ".contains(c)).filter(|part| !part.is_empty()).collect();
-    // A lone letter is the name of a quantity more often than the metre.
-    if parts.len() < 2 {
-        return None;
-    }
-    match parts.last()?.to_lowercase().as_str() {
-        "nm" => Some(LengthUnit::Nm),
-        "um" | "\u{b5}m" | "\u{3bc}m" => Some(LengthUnit::Um),
-        "mm" => Some(LengthUnit::Mm),
-        "m" => Some(LengthUnit::M),
-        _ => None,
-    }
-}
-
-/// The unit in two lines of names, of which either may hold it: `x` above `mm`, `x (mm)` above `1`.
-fn unit_of_two(above: &str, name: &str) -> Option<LengthUnit> {
-    if above.is_empty() {
-        return None;
-    }
-    unit_in(&format!("{above} {name}")).or_else(|| unit_in(above))
-}
-
-fn states_unit(line: &str) -> bool {
-    let words = line.split(|c: char| c.is_whitespace() || "()[],;=".contains(c));
-    let lower = line.to_lowercase();
-    words
-        .map(str::to_lowercase)
-        .any(|word| ["nm", "um", "\u{b5}m", "\u{3bc}m", "mm"].contains(&&*word))
-        || (lower.contains("unit") && lower.trim_end().ends_with('m'))
 }

@@ -16,9 +16,12 @@ use crate::artifact::{
     Input, Metadata, Row, RunView, SchemaVersion, Storage,
 };
 use crate::recipe::{Violation, demand};
-use crate::scans::file::{CHANNELS, Family, Grid, MapLines, open_channel};
+use crate::scans::file::{CHANNELS, Family, Grid, MapLines, is_instrument, open_channel};
+use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
-use crate::scans::{FileError, FileProblem, Source, TextFormat, admit_source, read_source};
+use crate::scans::{
+    Described, FileError, FileProblem, Source, TextFormat, admit_source, read_source,
+};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use faults::fault_rows;
 use picture::write_pictures;
@@ -39,7 +42,7 @@ pub struct Ingest {
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "crate::files::name::paths")]
     #[schemars(with = "Vec<String>")]
     pub scans: Vec<PathBuf>,
-    /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD) are told
+    /// How the text files are to be read; instrument files (SDF, X3P, Digital Surf, ERD ...) are told
     /// by their content and need no description.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<TextFormat>,
@@ -389,7 +392,10 @@ fn read_scans(
     const START: usize = 1 << 16;
     let name = file.path.display().to_string();
     let file_error = |problem| Box::new(FileError { file: name.clone(), problem }).into();
-    if Family::detect(source.start()).is_some() {
+    let source = source
+        .with_directory()
+        .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
+    if is_instrument(source.start()) {
         return read_instrument(ingest, file, source).map_err(|failure| match failure {
             Failure::File(problem) => file_error(problem),
             Failure::Stage(error) => *error,
@@ -398,18 +404,38 @@ fn read_scans(
     let Some(format) = &ingest.text else {
         return Err(StageError::NoTextFormat { path: file.path.clone() });
     };
-    let shape = TextShape::of(&source.start()[..source.start().len().min(START)]);
-    let mut scan = read_source(&name, source, format)?;
-    scan.name.clone_from(&file.name);
-    let contradictions = shape.map(|shape| shape.contradictions(format)).unwrap_or_default();
+    // The directory of a workbook is at its end.
+    let start = source.start();
+    let start = if is_workbook(start) { start } else { &start[..start.len().min(START)] };
+    let contradictions = TextShape::of(start).map(|shape| shape.contradictions(format));
+    let contradictions = contradictions.unwrap_or_default();
+    let scans = match read_source(&name, source, format)? {
+        Described::Line(scan) => vec![RawScan { name: file.name.clone(), ..scan }],
+        Described::Map(map) => {
+            let lines = chosen_lines(ingest, file, map.grid)?;
+            map.line_scans(&file.name, lines, ingest.map_line_step).map_err(file_error)?
+        }
+    };
+    let condition = |scan| Ok(condition(scan, &ingest.conditioning)?);
     Ok(ReadFile {
-        repeated: warnings::repeated(&scan, Some(format)),
-        scans: vec![condition(&scan, &ingest.conditioning)?],
+        repeated: scans.iter().find_map(|scan| warnings::repeated(scan, Some(format))),
+        scans: scans.iter().map(condition).collect::<Result<_, StageError>>()?,
         is_text: true,
         contradictions,
         channels: None,
         is_erd: false,
     })
+}
+
+/// Which lines of a map become scans; a profile is one.
+fn chosen_lines(ingest: &Ingest, file: &ScanFile, grid: Grid) -> Result<MapLines, StageError> {
+    match (grid, ingest.map_lines) {
+        (_, Some(lines)) => Ok(lines),
+        (Grid::Profile { .. }, None) => Ok(MapLines::Rows),
+        (Grid::Map { columns, rows, .. }, None) => {
+            Err(StageError::MapLines { path: file.path.clone(), rows, columns })
+        }
+    }
 }
 
 /// Why the lines of an instrument file are not there.
@@ -446,14 +472,7 @@ fn read_instrument(
     let Some(scan) = open_channel(source, ingest.erd_channel)? else { return Ok(read) };
     let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
     read.channels = said(CHANNELS).map(|(_, channels)| channels.clone());
-    let lines = match (scan.grid, ingest.map_lines) {
-        (_, Some(lines)) => lines,
-        (Grid::Profile { .. }, None) => MapLines::Rows,
-        (Grid::Map { columns, rows, .. }, None) => {
-            let path = file.path.clone();
-            return Err(Box::new(StageError::MapLines { path, rows, columns }).into());
-        }
-    };
+    let lines = chosen_lines(ingest, file, scan.grid).map_err(Box::new)?;
     scan.lines(&file.name, lines, ingest.map_line_step, &mut |mut line: RawScan| {
         if ingest.invert_instrument_heights {
             line.heights.iter_mut().for_each(|height| *height = -*height);

@@ -257,11 +257,10 @@ fn a_real_road_scan_can_be_described_by_options() {
     let spacing = "37.4890 um by least squares, median 37.0000 um";
     contains_all(&text, &["51067 points, 4373 missing (8.6 %)", "0 to 1914.41 mm", spacing]);
     assert!(!text.contains("WARNING"), "{text}");
-    let wrong = asperity_at(&options.replace("--x-unit mm", "--x-unit um"), &path).result();
-    contains_all(
-        &wrong,
-        &["WARNING", "`Distance (mm)` states mm, the description x_unit = \"um\""],
-    );
+    let wrong = asperity_at(&options.replace("--z-unit mm", "--z-unit um"), &path).result();
+    contains_all(&wrong, &["WARNING", "`Depth (mm)` states mm, the description z_unit = \"um\""]);
+    let steep = asperity_at(&options.replace("--x-unit mm", "--x-unit um"), &path).error(2);
+    contains_all(&steep, &["steeper than", "1.91441 mm long", "x_unit"]);
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod bench;
 mod campaign;
 mod files;
 mod inspect;
+mod laboratory;
 mod mistakes;
 mod names;
 mod odd_files;

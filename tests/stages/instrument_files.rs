@@ -71,9 +71,9 @@ fn heights_of_instruments_are_turned_where_the_recipe_says_so() {
 fn what_describes_no_file_and_units_that_contradict_the_file_are_warned_of() {
     let campaign = Campaign::new();
     assert_eq!(warnings(&campaign), Vec::<String>::new());
-    campaign.edit("recipe.toml", "x_unit = \"mm\"", "x_unit = \"um\"");
+    campaign.edit("recipe.toml", "z_unit = \"um\"", "z_unit = \"nm\"");
     let told = warnings(&campaign);
-    let parts = ["3 of 3 files", "track_0", "`x_mm` states mm", "x_unit = \"um\""];
+    let parts = ["3 of 3 files", "track_0", "`z_um` states um", "z_unit = \"nm\""];
     assert!(told.len() == 1 && parts.iter().all(|part| told[0].contains(part)), "{told:?}");
 
     let campaign = Campaign::new();
@@ -86,6 +86,16 @@ fn what_describes_no_file_and_units_that_contradict_the_file_are_warned_of() {
     campaign.edit("recipe.toml", r#"["scans"]"#, key);
     let told = warnings(&campaign);
     assert!(told.len() == 1 && told[0].contains("ingest.text.invert_z"), "{told:?}");
+}
+
+#[test]
+fn positions_in_a_unit_a_thousand_times_off_are_refused() {
+    let campaign = Campaign::new();
+    campaign.edit("recipe.toml", "x_unit = \"mm\"", "x_unit = \"um\"");
+    let error = try_run(&recipe(&campaign), &campaign.path("out"), ONLY_INGEST).unwrap_err();
+    let text = error.to_string();
+    let parts = ["track_0", "steeper than", "0.007975 mm long", "`x_unit`"];
+    assert!(parts.iter().all(|part| text.contains(part)), "{text}");
 }
 
 #[test]

@@ -18,9 +18,12 @@ use serde::Serialize;
 
 use super::CliError;
 use super::output::{json, print};
-use crate::scans::file::{Family, Grid, ScanFile, open_channel, read_channel};
+use crate::scans::file::{
+    DETECTED_BY, Family, Grid, OpenScan, ScanFile, foreign as named, open_channel, read_channel,
+};
+use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape as Shape;
-use crate::scans::{FileError, Source};
+use crate::scans::{Described, FileError, Source, read_bytes};
 use artifact::{Arrays, Table};
 use folder::{ManifestFile, Run, Stage};
 use instrument::InstrumentFile;
@@ -28,22 +31,25 @@ use scan::Scan;
 pub(super) use scan::ScanOptions;
 use solve::Solve;
 use text_shape::TextShape;
+pub(super) use text_shape::matrix_problem;
 
 const EXAMPLES: &str = "\
 Examples:
   A table, arrays, a manifest, the folder of a stage or of a whole run:
     asperity inspect runs/asphalt/bem/solves.arrow
     asperity inspect runs/asphalt
-  A file of an instrument (SDF, X3P, Digital Surf, ERD, Gwyddion text):
+  A file of an instrument (SDF, X3P, Digital Surf, ERD, OpenCRG, Wyko ASCII, Gwyddion text):
     asperity inspect specimen.x3p --json
   A text scan: first what it looks like, then with its units, which are never guessed:
     asperity inspect data/scans/specimen/scan_01.txt
-    asperity inspect data/scans/specimen/scan_01.txt --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um";
+    asperity inspect data/scans/specimen/scan_01.txt --separator semicolon --comment '#' --x-column x_mm --x-unit mm --z-column z_um --z-unit um
+  A sheet of a workbook (.xlsx), which is described like text:
+    asperity inspect scan.xlsx";
 
 /// Show what a file or folder holds: schema, units, shape, provenance, first rows.
 ///
 /// PATH is an Arrow table, an HDF5 file of arrays, a manifest, a stored solve, the folder of a stage
-/// or of a run, a file of an instrument, or a text scan. The kind is found by looking into it; the name does not matter.
+/// or of a run, a file of an instrument, a text scan, or a workbook (.xlsx) with one. The kind is found by looking into it; the name does not matter.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Inspect {
@@ -119,6 +125,11 @@ impl Inspect {
             Format::Hdf5 => Finding::Arrays(Arrays::read(path)?),
             Format::Json if Solve::is_in(path) => Finding::Solve(Solve::read(path)?),
             Format::Json => Finding::Manifest(ManifestFile::read(path)?),
+            Format::Archive if is_workbook(&read(path)?) => self.text_scan(path)?,
+            Format::Archive => {
+                self.scan.refuse(path, "the file of an instrument, which states its units")?;
+                instrument_file(path, self.erd_channel)?
+            }
             Format::Instrument => instrument_file(path, self.erd_channel)?,
             Format::Text => self.text_scan(path)?,
             Format::Binary if self.scan.are_given() || is_utf_16(&start) => self.text_scan(path)?,
@@ -126,7 +137,7 @@ impl Inspect {
             Format::Binary => {
                 return Err(foreign(
                     path,
-                    "is none of Arrow table, HDF5 file, manifest and text; nor a known file of an instrument (SDF, X3P, Digital Surf, ERD, Gwyddion text); export it as X3P, SDF or text first if it is a scan",
+                    "is none of Arrow table, HDF5 file, manifest and text; nor a known file of an instrument (SDF, X3P, Digital Surf, ERD, OpenCRG, Wyko ASCII, Gwyddion text); export it as X3P, SDF or text first if it is a scan",
                 ));
             }
         })
@@ -135,7 +146,10 @@ impl Inspect {
     /// A scan where a description is given, else what the text looks like.
     fn text_scan(&self, path: &Path) -> Result<Finding, CliError> {
         if self.scan.are_given() {
-            return Ok(Finding::Scan(self.scan.read(path)?));
+            return Ok(match self.scan.read(path)? {
+                Described::Line(scan) => Finding::Scan(self.scan.summary(path, scan)?),
+                Described::Map(map) => found(path, map.into())?,
+            });
         }
         Ok(Finding::Text(TextShape::read(path)?))
     }
@@ -172,7 +186,12 @@ fn instrument_file(path: &Path, channel: Option<usize>) -> Result<Finding, CliEr
     let source = Source::open(path).map_err(|error| wrong(error.into()))?;
     let scan = open_channel(source, channel).map_err(wrong)?;
     // The first bytes have told the family, and the file is read again.
-    let mut scan = scan.ok_or_else(|| foreign(path, "changes while it is read"))?;
+    found(path, scan.ok_or_else(|| foreign(path, "changes while it is read"))?)
+}
+
+/// What an opened scan is, and its statistics.
+fn found(path: &Path, mut scan: OpenScan<'_>) -> Result<Finding, CliError> {
+    let wrong = |problem| CliError::input(FileError { file: path.display().to_string(), problem });
     let statistics = scan.statistics().map_err(wrong)?;
     let file = InstrumentFile::of(path, &scan, &statistics);
     Ok(match scan.grid {
@@ -197,6 +216,11 @@ impl Finding {
     }
 }
 
+fn read(path: &Path) -> Result<Vec<u8>, CliError> {
+    read_bytes(path)
+        .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))
+}
+
 fn foreign(path: &Path, problem: &str) -> CliError {
     CliError::input(format!("{} {problem}", path.display()))
 }
@@ -207,6 +231,8 @@ enum Format {
     Arrow,
     Hdf5,
     Json,
+    /// A zip archive: X3P, a workbook, or something else.
+    Archive,
     Instrument,
     Text,
     Binary,
@@ -220,7 +246,9 @@ impl Format {
             Self::Arrow
         } else if start.starts_with(b"\x89HDF\r\n\x1a\n") {
             Self::Hdf5
-        } else if Family::detect(start).is_some() {
+        } else if Family::detect(start) == Some(Family::X3p) {
+            Self::Archive
+        } else if Family::detect(start).is_some() || named(start).is_some() {
             Self::Instrument
         } else if start.is_empty() {
             Self::Empty
@@ -242,7 +270,7 @@ impl Format {
             Self::Hdf5 => Some("a file of arrays"),
             Self::Json => Some("JSON"),
             Self::Instrument => Some("the file of an instrument, which states its units"),
-            Self::Text | Self::Binary | Self::Empty => None,
+            Self::Archive | Self::Text | Self::Binary | Self::Empty => None,
         }
     }
 }
@@ -253,9 +281,8 @@ fn is_utf_16(start: &[u8]) -> bool {
 }
 
 fn first_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
-    const ENOUGH: u64 = 4096;
     let mut bytes = Vec::new();
-    File::open(path)?.take(ENOUGH).read_to_end(&mut bytes)?;
+    File::open(path)?.take(DETECTED_BY as u64).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
@@ -265,14 +292,16 @@ mod tests {
 
     #[test]
     fn formats_are_told_by_content() {
-        let cases: [(&[u8], Format); 9] = [
+        let cases: [(&[u8], Format); 11] = [
             (b"ARROW1\0\0", Format::Arrow),
             (b"\x89HDF\r\n\x1a\n\0", Format::Hdf5),
             (b"\n {\"schema\": 1}", Format::Json),
             (b"# x z\n0 1\n", Format::Text),
             (b"x_\xb5m;z_\xb5m\n", Format::Text),
             (b"\xff\xfe1\0;\0", Format::Text),
-            (b"PK\x03\x04\x14\0\0", Format::Instrument),
+            (b"PK\x03\x04\x14\0\0", Format::Archive),
+            (b"\x01\0Directory\0\0", Format::Instrument),
+            (b"<?xml version=\"1.0\"?><a/>", Format::Instrument),
             (b"\x7fELF\0\0", Format::Binary),
             (b"", Format::Empty),
         ];

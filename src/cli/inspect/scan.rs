@@ -10,7 +10,7 @@ use crate::cli::output::{aligned, significant};
 use crate::cli::{CliError, values};
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
 use crate::scans::text_shape::TextShape;
-use crate::scans::{TextFormat, read_bytes, read_text};
+use crate::scans::{Described, TextFormat, read_bytes, read_described};
 use crate::surface::RawScan;
 use crate::surface::faults::merge_repeated;
 use crate::surface::resample::place_on_grid;
@@ -22,6 +22,9 @@ const FIRST_POINTS: usize = 5;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Text scans")]
 pub(in crate::cli) struct ScanOptions {
+    /// Sheet of a workbook (.xlsx), by name or number (the first is 1); the first if not given.
+    #[arg(long, value_name = "SHEET", value_parser = values::column)]
+    sheet: Option<Column>,
     /// Between the cells: tab, comma, semicolon, whitespace or one character.
     #[arg(long, value_parser = values::separator)]
     separator: Option<Separator>,
@@ -34,6 +37,12 @@ pub(in crate::cli) struct ScanOptions {
     /// Distance of neighbouring points in um, for a file of heights only, in place of --x-column.
     #[arg(long, value_name = "UM", value_parser = values::positive)]
     x_spacing_um: Option<f64>,
+    /// Column of the positions across the lines of a height map, by name or number (the first is 1).
+    #[arg(long, value_name = "COLUMN", value_parser = values::column)]
+    y_column: Option<Column>,
+    /// Unit of the positions across the lines: nm, um, mm or m.
+    #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
+    y_unit: Option<LengthUnit>,
     /// Column of the heights, by name or number (the first is 1).
     #[arg(long, value_name = "COLUMN", value_parser = values::column)]
     z_column: Option<Column>,
@@ -78,10 +87,13 @@ impl ScanOptions {
     fn given(&self) -> Vec<&'static str> {
         let default_missing = ["", "NaN", "BAD"];
         [
+            ("--sheet", self.sheet.is_some()),
             ("--separator", self.separator.is_some()),
             ("--x-column", self.x_column.is_some()),
             ("--x-unit", self.x_unit.is_some()),
             ("--x-spacing-um", self.x_spacing_um.is_some()),
+            ("--y-column", self.y_column.is_some()),
+            ("--y-unit", self.y_unit.is_some()),
             ("--z-column", self.z_column.is_some()),
             ("--z-unit", self.z_unit.is_some()),
             ("--invert-z", self.invert_z),
@@ -123,11 +135,11 @@ impl ScanOptions {
         Err(foreign(path, &problem))
     }
 
-    /// Reads the text file at `path`.
+    /// Reads the text file or the sheet of a workbook at `path`.
     ///
     /// # Errors
     /// [`CliError::Input`].
-    pub(super) fn read(&self, path: &Path) -> Result<Scan, CliError> {
+    pub(in crate::cli) fn read(&self, path: &Path) -> Result<Described, CliError> {
         let format = self.format().map_err(|needed| {
             let problem = format!(
                 "is no artifact but text; to read it as a scan, give {needed} as well (units are never \
@@ -135,7 +147,15 @@ impl ScanOptions {
             );
             foreign(path, &problem)
         })?;
-        let scan = read_text(path, &format)?;
+        Ok(read_described(path, &format)?)
+    }
+
+    /// What was read, and where the options contradict the names of the columns.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(super) fn summary(&self, path: &Path, scan: RawScan) -> Result<Scan, CliError> {
+        let format = self.format().map_err(|needed| foreign(path, &format!("needs {needed}")))?;
         let shape = TextShape::of(&read_bytes(path).map_err(CliError::input)?);
         let contradictions = shape.map(|shape| shape.contradictions(&format)).unwrap_or_default();
         Ok(Scan { contradictions, ..Scan::of(path, scan) })
@@ -147,6 +167,7 @@ impl ScanOptions {
         let spaced = self.x_spacing_um.is_some();
         let needed: Vec<&str> = [
             ("--separator", self.separator.is_none()),
+            ("--y-unit", self.y_column.is_some() && self.y_unit.is_none()),
             ("--x-column (or --x-spacing-um)", self.x_column.is_none() && !spaced),
             ("--x-unit", self.x_unit.is_none() && !spaced),
             ("--z-column", self.z_column.is_none()),
@@ -161,6 +182,7 @@ impl ScanOptions {
             return Err(needed.join(", "));
         };
         Ok(TextFormat {
+            sheet: self.sheet.clone(),
             separator,
             decimal_mark: self.decimal_mark,
             comment: self.comment,
@@ -170,6 +192,8 @@ impl ScanOptions {
             x_column: self.x_column.clone(),
             x_spacing_um: self.x_spacing_um,
             x_unit: self.x_unit,
+            y_column: self.y_column.clone(),
+            y_unit: self.y_unit,
             z_column,
             z_unit: self.z_unit,
             invert_z: self.invert_z,

@@ -9,8 +9,10 @@ use super::scan::Scan;
 use crate::cli::CliError;
 use crate::cli::output::{aligned, significant};
 use crate::scans::description::{DecimalMark, LengthUnit, Separator};
-use crate::scans::parse_text;
+use crate::scans::file::{Grid, ScanFile};
+use crate::scans::spreadsheet;
 use crate::scans::text_shape::{self, separator_text};
+use crate::scans::{Described, parse_described};
 
 /// More columns than a file of profiles has; without names they are the rows of a height map.
 const MOST_COLUMNS: usize = 12;
@@ -21,6 +23,9 @@ pub(super) struct TextShape {
     #[serde(with = "crate::files::name::path")]
     path: PathBuf,
     format: &'static str,
+    /// Of a workbook, where it is not the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sheet: Option<String>,
     encoding: &'static str,
     separator: Separator,
     decimal_mark: DecimalMark,
@@ -49,8 +54,15 @@ pub(super) struct TextShape {
 #[derive(Debug, Serialize)]
 struct Statistics {
     missing: usize,
-    /// Of the least-squares line through the positions, which ingest takes as well.
+    /// Rows and columns of a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shape: Option<[usize; 2]>,
+    /// Of the least-squares line through the positions, which ingest takes as well; along the rows of
+    /// a map.
     spacing_m: f64,
+    /// Between the rows of a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spacing_y_m: Option<f64>,
     mean_m: f64,
     /// Of the population of valid points.
     std_m: f64,
@@ -69,9 +81,20 @@ impl TextShape {
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
         let bytes = crate::scans::read_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
+        let is_workbook = spreadsheet::is_workbook(&bytes);
+        let what = match is_workbook {
+            true => "is a workbook without rows of numbers: no scan",
+            false => "is text without lines of numbers: no scan",
+        };
         let shape = text_shape::TextShape::of(&bytes)
-            .ok_or_else(|| foreign(path, "is text without lines of numbers: no scan"))?;
-        let recipe_section = shape.recipe_section();
+            .ok_or_else(|| problem_of_workbook(path, &bytes, what))?;
+        let recipe_section = match (shape.is_matrix(), shape.map) {
+            (true, _) => String::new(),
+            (false, Some(_)) => {
+                format!("[ingest]\nmap_lines = \"rows\"\n\n{}", shape.recipe_section())
+            }
+            (false, None) => shape.recipe_section(),
+        };
         let (read, unread) = match statistics(path, &bytes, &shape) {
             Ok(statistics) => (Some(statistics), None),
             Err(reason) => (None, Some(reason)),
@@ -83,7 +106,8 @@ impl TextShape {
         };
         Ok(Self {
             path: path.to_path_buf(),
-            format: "text",
+            format: if is_workbook { "workbook" } else { "text" },
+            sheet: shape.sheet,
             encoding: shape.encoding,
             separator: shape.separator,
             decimal_mark: shape.decimal_mark,
@@ -126,17 +150,28 @@ impl TextShape {
         let um = |metres: f64| significant(metres * 1e6) + " um";
         let numbers = match (&self.read, &self.unread) {
             (Some(read), _) => format!(
-                "{} missing, spacing {}, mean of z {}, rms of z {} about the mean",
+                "{}{} missing, spacing {}, mean of z {}, rms of z {} about the mean",
+                read.shape.map_or(String::new(), |[rows, columns]| {
+                    format!("height map, {rows} rows of {columns} points, ")
+                }),
                 read.missing,
-                um(read.spacing_m),
+                match read.spacing_y_m {
+                    Some(y) =>
+                        format!("{} along the rows and {} between them", um(read.spacing_m), um(y)),
+                    None => um(read.spacing_m),
+                },
                 um(read.mean_m),
                 um(read.std_m)
             ),
             (None, reason) => reason.clone().unwrap_or_default(),
         };
+        let what = match &self.sheet {
+            Some(sheet) => format!("{}, sheet `{sheet}`", self.format),
+            None => self.format.to_owned(),
+        };
         let lines = aligned(&[
             ("file", self.path.display().to_string()),
-            ("format", "text; nothing is read of it without a description".into()),
+            ("format", format!("{what}; nothing is read of it without a description")),
             ("encoding", self.encoding.into()),
             ("separator", separator_text(self.separator).trim_matches('"').into()),
             ("decimal mark", mark.into()),
@@ -155,6 +190,9 @@ impl TextShape {
             ("stated units", self.stated.join("\n")),
             ("with the proposal", numbers),
         ]);
+        if self.recipe_section.is_empty() {
+            return lines;
+        }
         format!("{lines}\na description for the recipe, to be checked:\n\n{}", self.recipe_section)
     }
 }
@@ -165,12 +203,8 @@ fn statistics(
     bytes: &[u8],
     shape: &text_shape::TextShape,
 ) -> Result<Statistics, String> {
-    if shape.columns.len() > MOST_COLUMNS && !shape.header {
-        return Err(format!(
-            "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, \
-             SDF or, from Gwyddion, as text with its comment lines",
-            shape.columns.len()
-        ));
+    if shape.is_matrix() {
+        return Err(matrix_problem(shape));
     }
     if let Some(cell) = &shape.thousands {
         return Err(format!(
@@ -182,7 +216,39 @@ fn statistics(
         format!("not read: the file does not state {}; units are never guessed", keys.join(", "))
     })?;
     let name = path.display().to_string();
-    let scan = parse_text(&name, bytes, &format).map_err(|error| error.to_string())?;
-    let Scan { missing, spacing_m, mean_m, std_m, .. } = Scan::of(path, scan);
-    Ok(Statistics { missing, spacing_m, mean_m, std_m })
+    match parse_described(&name, bytes, &format).map_err(|error| error.to_string())? {
+        Described::Line(scan) => {
+            let Scan { missing, spacing_m, mean_m, std_m, .. } = Scan::of(path, scan);
+            Ok(Statistics { missing, shape: None, spacing_m, spacing_y_m: None, mean_m, std_m })
+        }
+        Described::Map(map) => Ok(of_map(&map)),
+    }
+}
+
+fn of_map(map: &ScanFile) -> Statistics {
+    let (shape, spacing_m, spacing_y_m) = match map.grid {
+        Grid::Profile { spacing } => (None, spacing, None),
+        Grid::Map { columns, rows, spacing_x, spacing_y } => {
+            (Some([rows, columns]), spacing_x, Some(spacing_y))
+        }
+    };
+    let (missing, mean_m, std_m) = (map.missing(), map.mean(), map.standard_deviation());
+    Statistics { missing, shape, spacing_m, spacing_y_m, mean_m, std_m }
+}
+
+/// What to do with rows of a height map that state neither spacing nor unit.
+pub(in crate::cli) fn matrix_problem(shape: &text_shape::TextShape) -> String {
+    format!(
+        "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, SDF, as text with \
+         columns x, y and z or, from Gwyddion, as text with its comment lines",
+        shape.columns.len()
+    )
+}
+
+/// Why nothing is seen in a file: a workbook that cannot be opened says more.
+fn problem_of_workbook(path: &Path, bytes: &[u8], what: &str) -> CliError {
+    match spreadsheet::is_workbook(bytes).then(|| spreadsheet::Book::open(bytes)) {
+        Some(Err(error)) => CliError::input(format!("{}: {error}", path.display())),
+        _ => foreign(path, what),
+    }
 }

@@ -175,6 +175,14 @@ pub enum FileProblem {
         /// What the decoder says.
         reason: String,
     },
+    /// A file of another kind, which is known and not read.
+    #[error("this is {what}, which is not read; {advice}")]
+    Foreign {
+        /// Its kind.
+        what: &'static str,
+        /// What to do.
+        advice: &'static str,
+    },
     /// All points are marked as missing.
     #[error("all {points} heights are missing; there is nothing to read, export the scan again")]
     AllMissing {

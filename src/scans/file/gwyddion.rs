@@ -40,7 +40,7 @@ fn length(text: &str) -> Option<(f64, &str)> {
 
 /// A number with either decimal mark; whether thousands are separated is not known, so they are
 /// not read.
-fn number(word: &str) -> Option<f64> {
+pub(super) fn number(word: &str) -> Option<f64> {
     let point = if word.contains('.') { word.to_owned() } else { word.replacen(',', ".", 1) };
     point.parse().ok()
 }

@@ -7,6 +7,9 @@
 //! | Digital Surf | `.sur` and `.pro`, compressed or not | manual of the software |
 //! | ERD | longitudinal road profile, text | ERD file specification, UMTRI |
 //! | Gwyddion text | height map as text with its size and unit | manual of the software |
+//! | Wyko ASCII | height map as text with its pixel and wavelength | as Gwyddion reads it |
+//! | OpenCRG | grid of a road, text or binary | ASAM OpenCRG 1.2 |
+//! | SMATS | profile as XML | NIST surface metrology data base |
 //!
 //! The format is told by the content; the name of the file does not matter. Every size that a
 //! file declares is compared with what the file holds before memory is asked for: to read n bytes
@@ -17,25 +20,31 @@ mod bytes;
 mod digital_surf;
 mod erd;
 pub mod error;
+mod foreign;
 mod gwyddion;
 mod heights;
 mod lines;
+mod opencrg;
 mod packed;
 mod sdf;
 mod sdf_write;
+mod smats;
 mod statistics;
 #[cfg(test)]
 mod tests;
+mod wyko_ascii;
 mod x3p;
 
 pub use erd::CHANNELS;
 pub use error::{FileError, FileProblem, Place};
+pub use foreign::foreign;
 pub use lines::MapLines;
 pub use sdf_write::write as write_sdf;
 pub use statistics::Statistics;
 pub use x3p::write as write_x3p;
 
 use super::Source;
+use crate::scans::spreadsheet::is_workbook;
 use crate::surface::RawScan;
 use error::unexpected;
 use heights::Checked;
@@ -45,6 +54,9 @@ use std::path::Path;
 /// Largest number of points that are held in memory, 2 GB of heights. A larger map is read row
 /// by row, and its chosen lines may have as many.
 pub const LARGEST_POINTS: u64 = 1 << 28;
+
+/// First bytes by which a family is told.
+pub const DETECTED_BY: usize = 1 << 16;
 
 /// Family of instrument files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,6 +71,12 @@ pub enum Family {
     Erd,
     /// Image as text from Gwyddion.
     Gwyddion,
+    /// Height map as text of an interferometer.
+    WykoAscii,
+    /// Curved regular grid of a road.
+    OpenCrg,
+    /// Profile as XML of the data base SMATS.
+    Smats,
 }
 
 impl Family {
@@ -78,6 +96,12 @@ impl Family {
             Some(Self::Erd)
         } else if gwyddion::is_header(text) {
             Some(Self::Gwyddion)
+        } else if wyko_ascii::is_signature(text) {
+            Some(Self::WykoAscii)
+        } else if opencrg::is_header(text) {
+            Some(Self::OpenCrg)
+        } else if smats::is_header(&text[..text.len().min(DETECTED_BY)]) {
+            Some(Self::Smats)
         } else {
             None
         }
@@ -258,11 +282,27 @@ fn spacing(place: Place, metres: f64) -> Result<f64, FileProblem> {
     Err(unexpected(place, "the spacing of the points in m", format!("{metres:e}"), expected))
 }
 
+/// A file that was read at once.
+impl From<ScanFile> for OpenScan<'_> {
+    fn from(scan: ScanFile) -> Self {
+        let ScanFile { format, detected, grid, heights, instrument } = scan;
+        let heights = Checked::new(heights);
+        Self { format, detected, grid, instrument, declared: None, heights }
+    }
+}
+
+/// Whether a file, by its first bytes or, of an archive, all of them, is one that [`open`] reads or
+/// names; text and workbooks are not.
+pub fn is_instrument(start: &[u8]) -> bool {
+    !is_workbook(start) && (Family::detect(start).is_some() || foreign(start).is_some())
+}
+
 /// Opens an instrument file: its header is read, its heights are still to come. `None` if it is
-/// of none of the families.
+/// of none of the families: text, or a workbook, which a description goes with.
 ///
 /// # Errors
-/// [`FileProblem`] of the header, or a size that the file cannot hold.
+/// [`FileProblem`] of the header, or a size that the file cannot hold; files of kinds that are known
+/// and not read are named with the way out ([`FileProblem::Foreign`]).
 pub fn open(source: Source<'_>) -> Result<Option<OpenScan<'_>>, FileProblem> {
     open_channel(source, None)
 }
@@ -275,13 +315,27 @@ pub fn open_channel(
     source: Source<'_>,
     channel: Option<usize>,
 ) -> Result<Option<OpenScan<'_>>, FileProblem> {
-    let Some(family) = Family::detect(source.start()) else { return Ok(None) };
+    let Some(family) = Family::detect(source.start()) else {
+        return foreign(source.start()).map_or(Ok(None), Err);
+    };
+    let source = source.with_directory()?;
+    if family == Family::X3p {
+        if is_workbook(source.start()) {
+            return Ok(None);
+        }
+        if let Some(problem) = foreign::foreign_archive(source.start()) {
+            return Err(problem);
+        }
+    }
     let open = match family {
         Family::Sdf => sdf::open(source),
         Family::X3p => x3p::open(source),
         Family::DigitalSurf => digital_surf::open(source),
         Family::Erd => erd::open(source, channel),
         Family::Gwyddion => gwyddion::open(source),
+        Family::WykoAscii => wyko_ascii::read(&source.whole()?).map(OpenScan::from),
+        Family::OpenCrg => opencrg::read(&source.whole()?).map(OpenScan::from),
+        Family::Smats => smats::read(&source.whole()?).map(OpenScan::from),
     };
     open.map(Some)
 }
@@ -306,10 +360,12 @@ pub fn read_channel(path: &Path, channel: Option<usize>) -> Result<Option<ScanFi
         .map_err(file_error)
 }
 
-/// Reads the bytes of an instrument file; `None` if they are of none of the families.
+/// Reads the bytes of an instrument file; `None` if they are of none of the families: text, or a
+/// workbook, which a description goes with.
 ///
 /// # Errors
-/// [`FileError`] that tells of the file as `name`.
+/// [`FileError`] that tells of the file as `name`; files of kinds that are known and not read are
+/// named with the way out ([`FileProblem::Foreign`]).
 pub fn parse_file(name: &str, bytes: &[u8]) -> Result<Option<ScanFile>, FileError> {
     open(Source::of_bytes(bytes))
         .and_then(|scan| scan.map(OpenScan::whole).transpose())

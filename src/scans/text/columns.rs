@@ -9,6 +9,8 @@ use csv::StringRecord;
 pub(super) struct Columns {
     /// `None` for a file of heights only.
     pub(super) x: Option<usize>,
+    /// Of a height map.
+    pub(super) y: Option<usize>,
     pub(super) z: usize,
     names: Option<Vec<String>>,
     /// Whether every line must have one cell per name: among blanks a name of two words is two.
@@ -34,15 +36,17 @@ impl Columns {
         let place = |column: &Column| find(column, known);
         let by_name = |column: &Column| matches!(column, Column::Name(_));
         let exact = format.separator == Separator::Whitespace
-            && (by_name(&format.z_column) || format.x_column.as_ref().is_some_and(by_name));
+            && (by_name(&format.z_column)
+                || [&format.x_column, &format.y_column].into_iter().flatten().any(by_name));
         let x = format.x_column.as_ref().map(place).transpose()?;
+        let y = format.y_column.as_ref().map(place).transpose()?;
         let z = place(&format.z_column)?;
-        Ok(Self { x, z, names, exact })
+        Ok(Self { x, y, z, names, exact })
     }
 
     /// Number of cells a line needs.
     pub(super) fn needed(&self) -> usize {
-        self.x.unwrap_or(0).max(self.z) + 1
+        self.x.max(self.y).unwrap_or(0).max(self.z) + 1
     }
 
     /// What to call a column in a message.

@@ -1,14 +1,17 @@
 //! Text files of one point per line.
 
 mod columns;
+mod map;
 mod number;
 mod rows;
 #[cfg(test)]
 mod tests;
 
 use crate::scans::decode::{Located, TextLines};
-use crate::scans::file::LARGEST_POINTS;
+use crate::scans::description::Separator;
+use crate::scans::file::{LARGEST_POINTS, ScanFile};
 use crate::scans::last_number::{self, LastNumber};
+use crate::scans::spreadsheet::{Book, is_workbook};
 use crate::scans::{ScanError, ScanProblem, Source, TextFormat};
 use crate::surface::RawScan;
 use columns::{Columns, written_cells};
@@ -16,13 +19,40 @@ use csv::StringRecord;
 use number::{Cells, shorten};
 use rows::Rows;
 use statrs::statistics::{Data, OrderStatistics};
+use std::borrow::Cow;
 use std::path::Path;
+
+/// What a description reads.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Described {
+    /// Points along a line.
+    Line(RawScan),
+    /// Points on a grid, where the description has a `y_column`.
+    Map(ScanFile),
+}
 
 /// Reads the line scan in a text file; the scan is named for the file's stem.
 ///
 /// # Errors
-/// [`ScanError`] with the path, the line and the column.
+/// [`ScanError`] with the path, the line and the column; for the description of a height map.
 pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError> {
+    match read_described(path, format)? {
+        Described::Line(scan) => Ok(scan),
+        Described::Map(_) => Err(ScanError {
+            file: path.display().to_string(),
+            line: None,
+            column: None,
+            problem: no_line(),
+        }),
+    }
+}
+
+/// Reads the line scan or height map in a text file or a workbook; a scan is named for the file's
+/// stem.
+///
+/// # Errors
+/// [`ScanError`] with the path, the line and the column.
+pub fn read_described(path: &Path, format: &TextFormat) -> Result<Described, ScanError> {
     let whole =
         |problem| ScanError { file: path.display().to_string(), line: None, column: None, problem };
     if path.is_dir() {
@@ -36,14 +66,35 @@ pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError>
 /// Reads the line scan in the bytes of a text file.
 ///
 /// # Errors
-/// As [`read_source`].
+/// [`ScanError`] that tells of the file as `name`; for the description of a height map.
 pub fn parse_text(name: &str, bytes: &[u8], format: &TextFormat) -> Result<RawScan, ScanError> {
+    match parse_described(name, bytes, format)? {
+        Described::Line(scan) => Ok(scan),
+        Described::Map(_) => {
+            Err(ScanError { file: name.to_owned(), line: None, column: None, problem: no_line() })
+        }
+    }
+}
+
+fn no_line() -> ScanProblem {
+    let reason = "describes a height map, and a line scan is needed here";
+    ScanProblem::Description { key: "y_column", reason: reason.into() }
+}
+
+/// [`read_source`] of the bytes of a file.
+///
+/// # Errors
+/// [`ScanError`] that tells of the file as `name`.
+pub fn parse_described(
+    name: &str,
+    bytes: &[u8],
+    format: &TextFormat,
+) -> Result<Described, ScanError> {
     read_source(name, Source::of_bytes(bytes), format)
 }
 
-/// Reads the line scan in a text file line by line, of which one is in memory. Positions and
-/// heights are converted to metres, missing heights are NaN; positions grow from line to line or
-/// stay.
+/// Reads the line scan or height map in a text file, line by line, of which one is in memory, or in
+/// a workbook. Positions and heights are converted to metres, missing heights are NaN.
 ///
 /// # Errors
 /// [`ScanError`] that tells of the file as `name`.
@@ -51,29 +102,49 @@ pub fn read_source(
     name: &str,
     source: Source<'_>,
     format: &TextFormat,
-) -> Result<RawScan, ScanError> {
+) -> Result<Described, ScanError> {
     let error = |line, column, problem| ScanError { file: name.to_owned(), line, column, problem };
     let whole = |problem| error(None, None, problem);
     let located = |(line, problem): Located| error(line, None, problem);
 
     format.validate().map_err(whole)?;
+    let source = source.with_directory().map_err(|error| whole(error.into()))?;
+    let sheet;
+    let (source, format) = if is_workbook(source.start()) {
+        let mut book = Book::open(source.start()).map_err(whole)?;
+        sheet = book.text(format.sheet.as_ref(), format.decimal_mark).map_err(whole)?;
+        let separator = Separator::Tab;
+        let format = TextFormat { separator, encoding: "utf-8".into(), ..format.clone() };
+        (Source::of_bytes(sheet.as_bytes()), Cow::Owned(format))
+    } else if format.sheet.is_some() {
+        let reason = "names a sheet, but the file is no workbook (.xlsx); leave it out".into();
+        return Err(whole(ScanProblem::Description { key: "sheet", reason }));
+    } else {
+        (source, Cow::Borrowed(format))
+    };
     let mut lines = TextLines::open(source, &format.encoding).map_err(located)?;
-    lines.skip_preamble(format).map_err(located)?;
-    let points = read_points(Rows::new(lines, format), format)
+    lines.skip_preamble(&format).map_err(located)?;
+    let points = read_points(Rows::new(lines, &format), &format)
         .map_err(|failure| error(failure.line, failure.column, failure.problem))?;
-    let scan = to_metres(name, points, format);
-    check_plausible(&scan, format).map_err(whole)?;
-    let scan = cut_ends(scan, format).map_err(whole)?;
+    if format.y_column.is_some() {
+        let map = map::on_grid(points, &format).map_err(whole)?;
+        return Ok(Described::Map(map));
+    }
+    let scan = to_metres(name, points, &format);
+    check_plausible(&scan, &format).map_err(whole)?;
+    let scan = cut_ends(scan, &format).map_err(whole)?;
     if scan.heights.iter().all(|height| height.is_nan()) {
         return Err(whole(ScanProblem::AllMissing { points: scan.heights.len() }));
     }
-    Ok(scan)
+    Ok(Described::Line(scan))
 }
 
 /// The numbers of a file in its own units; no positions where it holds heights only.
 #[derive(Default)]
 struct Points {
     positions: Vec<f64>,
+    /// Positions across, of a height map.
+    across: Vec<f64>,
     heights: Vec<f64>,
 }
 
@@ -184,7 +255,7 @@ fn push(
 ) -> Result<(), (usize, ScanProblem)> {
     if let Some(x) = columns.x {
         let position = cells.position(&record[x]).map_err(|problem| (x, problem))?;
-        if let Some(&previous) = points.positions.last() {
+        if let (Some(&previous), None) = (points.positions.last(), columns.y) {
             // Equal positions are a fault of the track, which conditioning merges or refuses.
             if position < previous {
                 let (text, previous) = (record[x].trim().to_owned(), previous.to_string());
@@ -192,6 +263,9 @@ fn push(
             }
         }
         points.positions.push(position);
+    }
+    if let Some(y) = columns.y {
+        points.across.push(cells.position(&record[y]).map_err(|problem| (y, problem))?);
     }
     let height = cells.height(&record[columns.z]).map_err(|problem| (columns.z, problem))?;
     points.heights.push(height);
@@ -229,8 +303,9 @@ fn to_metres(name: &str, points: Points, format: &TextFormat) -> RawScan {
 fn check_plausible(scan: &RawScan, format: &TextFormat) -> Result<(), ScanProblem> {
     // An atomic force microscope steps by a nanometre; texture ends at wavelengths of 50 mm.
     const SPACINGS_M: std::ops::RangeInclusive<f64> = 1e-9..=1e-2;
-    // No profilometer of texture has a range of a metre.
-    const LARGEST_RANGE_M: f64 = 1.0;
+    // A track may stop now and then; a map has a line of points at each position.
+    const MOST_REPEATED_PERCENT: f64 = 5.0;
+    const FEWEST_REPEATED: usize = 5;
 
     let all_steps = scan.positions.windows(2).map(|pair| pair[1] - pair[0]);
     let steps = || all_steps.clone().filter(|step| *step > 0.0);
@@ -245,13 +320,49 @@ fn check_plausible(scan: &RawScan, format: &TextFormat) -> Result<(), ScanProble
             return Err(ScanProblem::AbsurdSpacing { spacing_mm: spacing * 1e3, key });
         }
     }
+    let repeated = all_steps.len() - steps().count();
+    let percent = 100.0 * repeated as f64 / scan.positions.len() as f64;
+    if percent > MOST_REPEATED_PERCENT && repeated >= FEWEST_REPEATED {
+        return Err(ScanProblem::Repeated { percent });
+    }
+    check_range(&scan.heights)?;
+    check_slope(scan)
+}
+
+fn check_range(heights: &[f64]) -> Result<(), ScanProblem> {
+    // No profilometer of texture has a range of a metre.
+    const LARGEST_RANGE_M: f64 = 1.0;
     // `f64::min` and `max` pass over NaN.
-    let lowest_m = scan.heights.iter().copied().fold(f64::INFINITY, f64::min);
-    let highest_m = scan.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest_m = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest_m = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if highest_m - lowest_m > LARGEST_RANGE_M {
         return Err(ScanProblem::AbsurdHeights { lowest_m, highest_m });
     }
     Ok(())
+}
+
+/// Refuses a scan whose neighbouring points are steeper than any surface at every second point, as
+/// they are where one of the units is a thousand times off.
+fn check_slope(scan: &RawScan) -> Result<(), ScanProblem> {
+    // 88 degrees. The steepest of the real scans has a median of 0.3.
+    const STEEPEST: f64 = 30.0;
+    let pairs = scan.positions.windows(2).zip(scan.heights.windows(2));
+    let slopes = || {
+        pairs
+            .clone()
+            .filter(|(x, _)| x[1] > x[0])
+            .map(|(x, z)| ((z[1] - z[0]) / (x[1] - x[0])).abs())
+    };
+    let (steep, all) =
+        slopes().filter(|slope| !slope.is_nan()).fold((0_usize, 0_usize), |(steep, all), slope| {
+            (steep + usize::from(slope > STEEPEST), all + 1)
+        });
+    if 2 * steep <= all {
+        return Ok(());
+    }
+    let slope = Data::new(slopes().filter(|slope| !slope.is_nan()).collect::<Vec<_>>()).median();
+    let length_m = scan.positions[scan.positions.len() - 1] - scan.positions[0];
+    Err(ScanProblem::Steep { slope, length_mm: length_m * 1e3 })
 }
 
 /// Drops the points within `cut_start_mm` of the first and `cut_end_mm` of the last.

@@ -4,7 +4,8 @@ use encoding_rs::{EUC_KR, Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
 
 /// Label and text. Byte order marks and valid UTF-8 are certain; of the rest, CP949 is told by
-/// its Hangul, and Western European (latin1, windows-1252) is what remains.
+/// its Hangul in pairs of bytes beyond ASCII, and Western European (latin1, windows-1252) is what
+/// remains.
 pub(crate) fn decode(bytes: &[u8]) -> (&'static str, Cow<'_, str>) {
     if let Some((encoding, mark)) = Encoding::for_bom(bytes) {
         let (text, _) = encoding.decode_without_bom_handling(&bytes[mark..]);
@@ -17,7 +18,7 @@ pub(crate) fn decode(bytes: &[u8]) -> (&'static str, Cow<'_, str>) {
         return ("utf-8", Cow::Borrowed(text));
     }
     let (korean, malformed) = EUC_KR.decode_without_bom_handling(bytes);
-    if !malformed && is_korean(&korean) {
+    if !malformed && stands_in_pairs(bytes) && is_korean(&korean) {
         return ("euc-kr", korean);
     }
     ("windows-1252", WINDOWS_1252.decode_without_bom_handling(bytes).0)
@@ -44,6 +45,17 @@ fn wide(bytes: &[u8]) -> Option<&'static Encoding> {
         (even, 0) if even > most => Some(UTF_16BE),
         _ => None,
     }
+}
+
+/// Whether bytes beyond ASCII stand in runs of even length more often than not, as those of the
+/// common Hangul do. A lone one is a letter of Western European: `\xb5m` is `\u{b5}m`, though CP949
+/// has a rare syllable for these two bytes as well.
+fn stands_in_pairs(bytes: &[u8]) -> bool {
+    let runs = bytes.split(u8::is_ascii).map(<[u8]>::len).filter(|length| *length > 0);
+    let (even, odd) = runs.fold((0_usize, 0_usize), |(even, odd), length| {
+        (even + usize::from(length % 2 == 0), odd + length % 2)
+    });
+    even > odd
 }
 
 /// Whether most characters beyond ASCII are Hangul syllables.

@@ -5,16 +5,22 @@ use crate::scans::description::default_missing;
 /// Words that stand for a missing height.
 const WORDS: [&str; 8] = ["", "nan", "bad", "na", "n/a", "null", "---", "*"];
 
+/// More words for a gap than any instrument has.
+const MOST_WORDS: usize = 20;
+
 /// Whether a cell is a word for a missing height.
 pub(super) fn is_word(cell: &str) -> bool {
     WORDS.iter().any(|word| word.eq_ignore_ascii_case(cell))
 }
 
-/// The words that a description has to list, each once.
+/// The words that a description has to list, each once, [`MOST_WORDS`] at most.
 pub(super) fn words(words: impl Iterator<Item = String>) -> Vec<String> {
     let known = default_missing();
     let mut found: Vec<String> = Vec::new();
     for cell in words {
+        if found.len() == MOST_WORDS {
+            break;
+        }
         if !known.iter().chain(&found).any(|word| word.eq_ignore_ascii_case(&cell)) {
             found.push(cell);
         }
