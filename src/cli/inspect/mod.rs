@@ -282,6 +282,8 @@ fn is_utf_16(start: &[u8]) -> bool {
 
 fn first_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
+    // To open a named pipe waits for a writer.
+    crate::files::admit(path, u64::MAX)?;
     File::open(path)?.take(DETECTED_BY as u64).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
