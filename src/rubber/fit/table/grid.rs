@@ -93,10 +93,23 @@ pub(super) fn of_text(text: &str, separator: Option<Separator>) -> Vec<Grid> {
 fn row(text: &str, line: u64, separator: Separator) -> Row {
     let comment = text.trim_start().starts_with('#');
     let cells = match separator.character() {
-        None => text.trim_start_matches([' ', '#']).split_whitespace().map(str::to_owned).collect(),
+        None => {
+            let text = if comment { without_remark(text) } else { text };
+            text.trim_start_matches([' ', '#']).split_whitespace().map(str::to_owned).collect()
+        }
         Some(character) => split(text.trim_end_matches('\r'), character),
     };
     Row { line, comment, cells }
+}
+
+/// A header without the remark in parentheses at its end, whose words are no names of columns; a unit has at
+/// most two words.
+fn without_remark(text: &str) -> &str {
+    let inner = text.trim_end().strip_suffix(')').and_then(|text| text.rsplit_once(" ("));
+    match inner {
+        Some((names, remark)) if remark.split_whitespace().count() > 2 => names,
+        _ => text,
+    }
 }
 
 /// Cells of a line. A quote counts only where it opens a cell, for it also stands for the loss
