@@ -137,7 +137,10 @@ pub(super) fn no_header(grids: &[Grid], wanted: Wanted) -> Located {
         Some((quantity, line)) => {
             (Some(line), format!("there is no column of the {}: {example}", quantity.what()))
         }
-        None => (None, format!("there is no header that names the columns: {example}")),
+        None => {
+            let first = grids.first().and_then(|grid| grid.rows.first()).map(|row| row.line);
+            (first, format!("there is no header that names the columns: {example}"))
+        }
     }
 }
 
