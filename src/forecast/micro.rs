@@ -80,9 +80,8 @@ pub(super) fn microscales(
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let solve = || -> Result<f64, SolveError> {
                 let speed = speed_mm_s / 1e3;
-                let mut contact = SlidingContact::new_interruptible(
-                    rubber, speed, period, &heights, interrupt,
-                )?;
+                let mut contact =
+                    SlidingContact::new_interruptible(rubber, speed, period, &heights, interrupt)?;
                 let solution = contact.solve(row.pressure_mpa * 1e6)?;
                 Ok(solution.pressure.iter().copied().fold(0.0, f64::max))
             };

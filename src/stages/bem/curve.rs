@@ -243,15 +243,13 @@ impl<'a> Curve<'a> {
                     wave::sample_while(&self.surface.profile, self.period, points, goes_on)
                         .ok_or(SolveError::Interrupted)?;
                 let speed = self.speed_mm_s / 1e3;
-                Ok(place.insert(
-                    SlidingContact::new_interruptible(
-                        self.rubber,
-                        speed,
-                        self.period,
-                        &heights,
-                        self.interrupted,
-                    )?,
-                ))
+                Ok(place.insert(SlidingContact::new_interruptible(
+                    self.rubber,
+                    speed,
+                    self.period,
+                    &heights,
+                    self.interrupted,
+                )?))
             }
         }
     }

@@ -202,9 +202,8 @@ impl Task {
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let speed = self.speed_mm_s / 1e3;
             let law = law.clone();
-            let mut contact = SoftContact::new_interruptible(
-                rubber, speed, period, &heights, law, interrupt,
-            )?;
+            let mut contact =
+                SoftContact::new_interruptible(rubber, speed, period, &heights, law, interrupt)?;
             let solution = contact.solve(most_pressure_mpa * 1e6)?;
             largest = solution.pressure.into_iter().fold(largest, f64::max);
         }
