@@ -286,6 +286,7 @@ fn advice(cause: &io::Error) -> &'static str {
             "; a file is in the way, choose another --out"
         }
         io::ErrorKind::NotFound => "; check the path",
+        io::ErrorKind::IsADirectory => "; a folder is in the place of a file: move it away",
         _ => "",
     }
 }

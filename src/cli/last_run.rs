@@ -11,7 +11,7 @@ use super::output::{json, note};
 use super::recipe_options::{with_scans, with_tolerance};
 use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
 use crate::pipeline::{self, State};
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, RecipeError};
 use crate::report::html::Origin;
 use crate::stages::Stage;
 use crate::sweep::slurm::shell_path;
@@ -218,16 +218,46 @@ impl LastRun {
         words.join(" ")
     }
 
-    /// Why the result of a stage in the folder `out` is not what the recipe asks for; none if it is.
+    /// Why the result of a stage in the folder `out` is not what the recipe asks for, as it is now or as it was read
+    /// by the last run; none if it is.
     pub(super) fn doubt(&self, out: &Path, stage: &str) -> Option<String> {
+        self.doubt_by_recipe(out, stage).or_else(|| self.doubt_by_note(out, stage))
+    }
+
+    /// What a recipe in place of that of the last run asks for, stage by stage.
+    fn states(
+        &self,
+        recipe: Result<Recipe, RecipeError>,
+        out: &Path,
+    ) -> Result<Vec<(Stage, State)>, CliError> {
+        let recipe = with_scans(recipe?, &self.recipe_for(out), &self.scans)?;
+        Ok(pipeline::status(&with_tolerance(recipe, self.tolerance)?, out)?)
+    }
+
+    /// A note that was copied from another run folder, or that a run of other stages has left.
+    fn doubt_by_note(&self, out: &Path, stage: &str) -> Option<String> {
+        let path = self.recipe_for(out);
+        let text = self.text.as_ref()?;
+        if crate::files::read_settings(&path).is_ok_and(|now| now == *text) {
+            return None;
+        }
+        // A text that this version cannot read any more tells nothing; the recipe has had its say.
+        let states = self.states(Recipe::parse(text, &path), out).ok()?;
+        let stale = states.iter().find_map(|(known, state)| match state {
+            State::Stale(reasons) if known.name() == stage => Some(reasons),
+            _ => None,
+        })?;
+        Some(format!(
+            "{stage} is not what the text of the last run in {} asks for ({}): `asperity run` writes it anew",
+            out.join(Self::FILE).display(),
+            first_cause(&states, stale)
+        ))
+    }
+
+    fn doubt_by_recipe(&self, out: &Path, stage: &str) -> Option<String> {
         let path = self.recipe_for(out);
         let recipe = path.display();
-        let states = Recipe::read(&path)
-            .map_err(CliError::from)
-            .and_then(|read| with_scans(read, &path, &self.scans))
-            .and_then(|read| with_tolerance(read, self.tolerance))
-            .and_then(|read| Ok(pipeline::status(&read, out)?));
-        let states = match states {
+        let states = match self.states(Recipe::read(&path), out) {
             Ok(states) => states,
             Err(error) => {
                 return Some(format!(

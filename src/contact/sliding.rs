@@ -73,26 +73,39 @@ impl SlidingContact {
         period: f64,
         heights: &[f64],
     ) -> Result<Self, ContactError> {
+        Self::new_interruptible(rubber, speed, period, heights, &Interrupt::default())
+    }
+
+    /// As [`Self::new`], with an interrupt that ends the set-up, which takes seconds on millions of points, and
+    /// later a solve between two Krylov iterations.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`ContactError::Interrupted`].
+    pub fn new_interruptible(
+        rubber: &Rubber,
+        speed: f64,
+        period: f64,
+        heights: &[f64],
+        interrupt: &Interrupt,
+    ) -> Result<Self, ContactError> {
         check(rubber, speed, period, heights)?;
         let centred = remove_mean(heights);
         let extremes = centred.iter().fold((0.0_f64, 0.0_f64), |(a, b), z| (a.min(*z), b.max(*z)));
         let mut planner = RealFftPlanner::new();
-        let mut grids = vec![Grid::new(&mut planner, rubber, speed, period, centred)];
+        let mut grid = |heights| -> Result<Grid, ContactError> {
+            check_interrupt(interrupt)?;
+            Ok(Grid::new(&mut planner, rubber, speed, period, heights))
+        };
+        let mut grids = vec![grid(centred)?];
         while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
             let coarser = coarsen(&grids[grids.len() - 1].heights);
-            grids.push(Grid::new(&mut planner, rubber, speed, period, coarser));
+            grids.push(grid(coarser)?);
         }
         let finest = &mut grids[0];
         let slopes = finest.space.slope(&finest.heights);
         grids.reverse();
-        let (height_range, interrupt) = (extremes.1 - extremes.0, Interrupt::default());
+        let (height_range, interrupt) = (extremes.1 - extremes.0, interrupt.clone());
         Ok(Self { speed, grids, slopes, height_range, interrupt })
-    }
-
-    /// With an interrupt that ends a solve between two Krylov iterations.
-    #[must_use]
-    pub fn interruptible(self, interrupt: &Interrupt) -> Self {
-        Self { interrupt: interrupt.clone(), ..self }
     }
 
     /// Number of points of the finest grid.
@@ -114,6 +127,7 @@ impl SlidingContact {
                 range: "positive and finite",
             });
         }
+        check_interrupt(&self.interrupt)?;
         if let Some(solution) = self.full_contact(mean_pressure) {
             return self.accept(solution, None);
         }
@@ -209,9 +223,7 @@ impl SlidingContact {
                 interrupt: &self.interrupt,
             };
             let outcome = contact.solve(goal);
-            if self.interrupt.is_set() {
-                return Err(ContactError::Interrupted);
-            }
+            check_interrupt(&self.interrupt)?;
             applications += (outcome.applications * grid.heights.len()) as f64 / points as f64;
             if !finest {
                 pressure = contact.pressure;
@@ -250,6 +262,12 @@ impl Grid {
         let edges = EdgeReader::new(rubber, speed, period / points as f64);
         Self { space, heights, kernel, edges }
     }
+}
+
+/// # Errors
+/// [`ContactError::Interrupted`] after an interrupt.
+pub(crate) fn check_interrupt(interrupt: &Interrupt) -> Result<(), ContactError> {
+    if interrupt.is_set() { Err(ContactError::Interrupted) } else { Ok(()) }
 }
 
 pub(crate) fn check(
@@ -334,9 +352,12 @@ pub(crate) fn resample(values: &[f64], points: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    fn heights() -> Vec<f64> {
+        (0..64).map(|i| 1e-5 * (0.1 * f64::from(i)).sin()).collect()
+    }
+
     fn sine() -> SlidingContact {
-        let heights: Vec<f64> = (0..64).map(|i| 1e-5 * (0.1 * f64::from(i)).sin()).collect();
-        SlidingContact::new(&Rubber::elastic(3e6, 0.5), 0.01, 1e-3, &heights).unwrap()
+        SlidingContact::new(&Rubber::elastic(3e6, 0.5), 0.01, 1e-3, &heights()).unwrap()
     }
 
     #[test]
@@ -360,9 +381,14 @@ mod tests {
     #[test]
     fn an_interrupt_ends_a_solve_and_is_no_answer() {
         let interrupt = Interrupt::default();
-        let mut contact = sine().interruptible(&interrupt);
+        let set_up = || {
+            let rubber = Rubber::elastic(3e6, 0.5);
+            SlidingContact::new_interruptible(&rubber, 0.01, 1e-3, &heights(), &interrupt)
+        };
+        let mut contact = set_up().unwrap();
         let solution = contact.solve(1e4).unwrap();
         interrupt.set();
+        assert_eq!(set_up().err(), Some(ContactError::Interrupted));
         assert_eq!(contact.solve(1e4), Err(ContactError::Interrupted));
         assert_eq!(contact.solve_for_area(0.3, 1e-6), Err(ContactError::Interrupted));
         assert_eq!(sine().solve(1e4).unwrap(), solution);

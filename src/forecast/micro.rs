@@ -79,8 +79,9 @@ pub(super) fn microscales(
                 forecasts.iter().find(same).map_or(1.0, |curve| f64::from(curve.realisations));
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let solve = || -> Result<f64, SolveError> {
-                let mut contact = SlidingContact::new(rubber, speed_mm_s / 1e3, period, &heights)?
-                    .interruptible(interrupt);
+                let speed = speed_mm_s / 1e3;
+                let mut contact =
+                    SlidingContact::new_interruptible(rubber, speed, period, &heights, interrupt)?;
                 let solution = contact.solve(row.pressure_mpa * 1e6)?;
                 Ok(solution.pressure.iter().copied().fold(0.0, f64::max))
             };

@@ -7,7 +7,8 @@ use super::solution::{Fields, SoftContactSolution};
 use crate::contact::ContactError;
 use crate::contact::half_space::HalfSpace;
 use crate::contact::sliding::{
-    COARSEST_POINTS, INNER_TOLERANCE, RESIDUAL_TOLERANCE, check, coarsen, remove_mean, resample,
+    COARSEST_POINTS, INNER_TOLERANCE, RESIDUAL_TOLERANCE, check, check_interrupt, coarsen,
+    remove_mean, resample,
 };
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
@@ -69,24 +70,36 @@ impl SoftContact {
         heights: &[f64],
         law: LocalLaw,
     ) -> Result<Self, SoftContactError> {
+        Self::new_interruptible(rubber, speed, period, heights, law, &Interrupt::default())
+    }
+
+    /// As [`Self::new`], with an interrupt that ends the set-up, and later a solve between two Krylov iterations.
+    ///
+    /// # Errors
+    /// As [`crate::contact::SlidingContact::new_interruptible`].
+    pub fn new_interruptible(
+        rubber: &Rubber,
+        speed: f64,
+        period: f64,
+        heights: &[f64],
+        law: LocalLaw,
+        interrupt: &Interrupt,
+    ) -> Result<Self, SoftContactError> {
         check(rubber, speed, period, heights)?;
         let mut planner = RealFftPlanner::new();
-        let mut grid = |heights| Grid::new(&mut planner, rubber, speed, period, heights);
-        let mut grids = vec![grid(remove_mean(heights))];
+        let mut grid = |heights| -> Result<Grid, SoftContactError> {
+            check_interrupt(interrupt)?;
+            Ok(Grid::new(&mut planner, rubber, speed, period, heights))
+        };
+        let mut grids = vec![grid(remove_mean(heights))?];
         while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
             let coarser = coarsen(&grids[grids.len() - 1].heights);
-            grids.push(grid(coarser));
+            grids.push(grid(coarser)?);
         }
         let finest = &mut grids[0];
         let slopes = finest.space.slope(&finest.heights);
         grids.reverse();
-        Ok(Self { speed, law, grids, slopes, interrupt: Interrupt::default() })
-    }
-
-    /// With an interrupt that ends a solve between two Krylov iterations.
-    #[must_use]
-    pub fn interruptible(self, interrupt: &Interrupt) -> Self {
-        Self { interrupt: interrupt.clone(), ..self }
+        Ok(Self { speed, law, grids, slopes, interrupt: interrupt.clone() })
     }
 
     /// Number of points of the finest grid.
@@ -127,9 +140,7 @@ impl SoftContact {
                 None => flat_start(&newton),
             };
             let (outcome, softened) = solve_grid(&mut newton, &mut state, tolerance);
-            if self.interrupt.is_set() {
-                return Err(SoftContactError::Contact(ContactError::Interrupted));
-            }
+            check_interrupt(&self.interrupt)?;
             applications += (outcome.krylov_iterations * n) as f64 / points as f64;
             if n < points {
                 coarser = Some((state, newton.coordinate_compliance()));
@@ -238,6 +249,9 @@ fn solve_grid(newton: &mut Newton, state: &mut State, tolerance: f64) -> (Outcom
         total.converged = outcome.converged;
         total.iterations += outcome.iterations;
         total.krylov_iterations += outcome.krylov_iterations;
+        if newton.interrupt.is_set() {
+            break;
+        }
     }
     (total, true)
 }

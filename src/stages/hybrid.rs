@@ -253,9 +253,10 @@ fn one_surface(
             rows.extend(at_one_speed.iter().map(|curve| beyond(curve, 0.0, 0.0)));
             continue;
         };
-        let mut contact = SoftContact::new(rubber, speed_mm_s / 1e3, period, &heights, law)
-            .map_err(|error| failed(error.into()))?
-            .interruptible(interrupt);
+        let speed = speed_mm_s / 1e3;
+        let mut contact =
+            SoftContact::new_interruptible(rubber, speed, period, &heights, law, interrupt)
+                .map_err(|error| failed(error.into()))?;
         for curve in at_one_speed {
             let solution = match contact.solve(curve.pressure_mpa * 1e6) {
                 Ok(solution) => solution,

@@ -39,6 +39,21 @@ impl Wave {
 
 /// Heights in metres of superposed waves on `points` equidistant points of one period (metres).
 pub fn sample(waves: &[Wave], period: f64, points: usize) -> Vec<f64> {
+    heights(waves, period, points).collect()
+}
+
+/// As [`sample`], as long as `goes_on` says so, which is asked at each point: tens of waves on millions of points take
+/// seconds.
+pub fn sample_while(
+    waves: &[Wave],
+    period: f64,
+    points: usize,
+    goes_on: impl Fn() -> bool,
+) -> Option<Vec<f64>> {
+    heights(waves, period, points).map(|height| goes_on().then_some(height)).collect()
+}
+
+fn heights(waves: &[Wave], period: f64, points: usize) -> impl Iterator<Item = f64> {
     let spacing = period / points as f64;
-    (0..points).map(|i| waves.iter().map(|wave| wave.height(i as f64 * spacing)).sum()).collect()
+    (0..points).map(move |i| waves.iter().map(|wave| wave.height(i as f64 * spacing)).sum())
 }

@@ -34,7 +34,8 @@ fn with_failing(campaign: &Campaign, inject: &str, arguments: &str) -> Option<Ou
 fn a_failed_write_of_arrays_is_never_a_result() {
     let campaign = finished();
     let whole = digests(&campaign.path("out"));
-    for number in 1..=3 {
+    // The first call of this kind notes who holds the lock.
+    for number in 2..=4 {
         let out = format!("failed_{number}");
         let inject = format!("pwrite64:error=ENOSPC:when={number}");
         let run = format!("run recipe.toml --out {out}");
@@ -73,9 +74,11 @@ fn a_solve_that_cannot_be_read_is_an_error() {
         fs::remove_file(solve).unwrap();
         // Reading a folder is an error that is not "not found", for root too.
         fs::create_dir(solve).unwrap();
-        let error = quietly(&campaign, "run recipe.toml --out out").error(1);
+        // Whoever put the folder there can mend it.
+        let error = quietly(&campaign, "run recipe.toml --out out").error(2);
         let name = solve.file_name().unwrap().to_str().unwrap();
         assert!(error.contains(name) && error.contains("Is a directory"), "{error}");
+        assert!(error.contains("move it away"), "{error}");
         fs::remove_dir(solve).unwrap();
         fs::write(solve, kept).unwrap();
         quietly(&campaign, "run recipe.toml --out out").result();

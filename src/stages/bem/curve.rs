@@ -238,12 +238,18 @@ impl<'a> Curve<'a> {
                     }
                     .into());
                 }
-                let heights = wave::sample(&self.surface.profile, self.period, points);
+                let goes_on = || !self.interrupted.is_set();
+                let heights =
+                    wave::sample_while(&self.surface.profile, self.period, points, goes_on)
+                        .ok_or(SolveError::Interrupted)?;
                 let speed = self.speed_mm_s / 1e3;
-                Ok(place.insert(
-                    SlidingContact::new(self.rubber, speed, self.period, &heights)?
-                        .interruptible(self.interrupted),
-                ))
+                Ok(place.insert(SlidingContact::new_interruptible(
+                    self.rubber,
+                    speed,
+                    self.period,
+                    &heights,
+                    self.interrupted,
+                )?))
             }
         }
     }

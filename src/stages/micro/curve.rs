@@ -293,8 +293,14 @@ impl<'a> MicroCurve<'a> {
             Some(contact) => contact,
             None => {
                 let speed = self.task.speed_mm_s / 1e3;
-                SlidingContact::new(self.rubber, speed, self.period, &self.heights())?
-                    .interruptible(self.interrupted)
+                let heights = self.heights();
+                SlidingContact::new_interruptible(
+                    self.rubber,
+                    speed,
+                    self.period,
+                    &heights,
+                    self.interrupted,
+                )?
             }
         };
         Ok(self.half_space.insert(contact))

@@ -201,8 +201,9 @@ impl Task {
             let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let speed = self.speed_mm_s / 1e3;
-            let mut contact = SoftContact::new(rubber, speed, period, &heights, law.clone())?
-                .interruptible(interrupt);
+            let law = law.clone();
+            let mut contact =
+                SoftContact::new_interruptible(rubber, speed, period, &heights, law, interrupt)?;
             let solution = contact.solve(most_pressure_mpa * 1e6)?;
             largest = solution.pressure.into_iter().fold(largest, f64::max);
         }

@@ -158,7 +158,7 @@ impl Problem {
         let heights = wave::sample(&[wave], wave.wavelength, self.columns);
         let speed = self.speed_mm_s / 1e3;
         let mut contact =
-            SlidingContact::new(rubber, speed, wave.wavelength, &heights)?.interruptible(interrupt);
+            SlidingContact::new_interruptible(rubber, speed, wave.wavelength, &heights, interrupt)?;
         // Every pressure is solved from scratch, so one that fails is no end.
         let outcome = |pressure: &f64| match contact.solve(pressure * 1e6) {
             Ok(solution) => Ok(Outcome::Solved(self.read_half_space(&solution, &heights))),
