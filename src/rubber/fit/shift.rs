@@ -21,6 +21,9 @@ const LEAST_COMMON_POINTS: usize = 2;
 /// per cent from clamping to clamping.
 const LEAST_CHANGE: f64 = 0.05;
 
+/// Difference in ln a up to which E'' and tan δ confirm a shift by E': a tenth of a decade.
+const AGREEMENT: f64 = 0.1 * std::f64::consts::LN_10;
+
 /// First shifts of all sweeps, sorted by temperature.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FirstShifts {
@@ -32,8 +35,8 @@ pub(super) struct FirstShifts {
     pub groups: Vec<Range<usize>>,
     /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
     pub by_loss: Vec<usize>,
-    /// The colder one of each pair whose shift hardly shows: E' changes by less than it scatters,
-    /// and E'' and tan δ are flat.
+    /// The colder one of each pair whose shift hardly shows: E' changes by little more than it
+    /// scatters, and E'' and tan δ are flat or tell of another shift.
     pub uncertain: Vec<usize>,
 }
 
@@ -78,7 +81,8 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
 fn joined(colder: &Sweep, hotter: &Sweep, free_vertical: bool) -> Option<Pair> {
     let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
     let plain = |ln_shift| {
-        let uncertain = change(colder, hotter) < LEAST_CHANGE && by_loss().is_none();
+        let confirmed = || by_loss().is_some_and(|loss| (loss - ln_shift).abs() < AGREEMENT);
+        let uncertain = change(colder, hotter) < LEAST_CHANGE && !confirmed();
         Pair { ln_shift, ln_vertical: 0.0, by_loss: false, uncertain }
     };
     if free_vertical {
