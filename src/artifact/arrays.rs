@@ -351,7 +351,7 @@ impl<'a> Reader<'a> {
     ) -> Result<(), ArtifactError> {
         let mut datasets = Vec::new();
         self.collect(&self.file, &mut datasets)?;
-        datasets.sort_by_cached_key(|dataset| name_of(dataset));
+        datasets.sort_by_cached_key(name_of);
         let mut content = ContentHasher::new(&header.schema, header.version);
         for dataset in datasets {
             let dataset = self.dataset(&dataset)?;
