@@ -132,7 +132,12 @@ impl Recipe {
         })?;
         recipe.share_tolerance().and_then(|()| recipe.check()).map_err(|violation| {
             let (line, typed) = hints::place(text, &violation);
-            RecipeError::Value { path: path.to_owned(), line, typed, violation }
+            RecipeError::Value {
+                path: path.to_owned(),
+                line,
+                typed,
+                violation: Box::new(violation),
+            }
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {

@@ -118,7 +118,6 @@ pub(super) struct Fit {
 enum VerticalKind {
     None,
     RhoT,
-    Free,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -194,7 +193,6 @@ impl Fit {
                 VerticalKind::RhoT => VerticalChoice::RhoT {
                     expansion_per_k: self.expansion_per_k.unwrap_or(VOLUME_EXPANSION_PER_K),
                 },
-                VerticalKind::Free => VerticalChoice::Free,
             },
             shift_factors: shift_factors.map_err(CliError::input)?,
         })

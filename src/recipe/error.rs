@@ -46,7 +46,7 @@ pub enum RecipeError {
         /// The value as the recipe has it.
         typed: Option<String>,
         /// The key, its value and what it must be.
-        violation: Violation,
+        violation: Box<Violation>,
     },
 }
 

@@ -30,19 +30,16 @@ impl<'a> Source<'a> {
         Ok(Self { start: Cow::Owned(start), rest: Box::new(reader), length })
     }
 
-    /// The file at `path`. What is no plain file has no known length and is read into memory.
+    /// The file at `path`.
     ///
     /// # Errors
-    /// Those of the operating system.
+    /// Those of the operating system; what is no plain file is refused, before it is opened, since
+    /// a pipe would wait for its writer.
     pub fn open(path: &Path) -> io::Result<Source<'static>> {
+        crate::files::admit(path, u64::MAX)?;
         let file = File::open(path)?;
-        let metadata = file.metadata()?;
-        if metadata.is_file() {
-            return Source::new(file, metadata.len());
-        }
-        let bytes = super::read_bytes(path)?;
-        let length = bytes.len() as u64;
-        Ok(Source { start: Cow::Owned(bytes), rest: Box::new(io::empty()), length })
+        let length = file.metadata()?.len();
+        Source::new(file, length)
     }
 
     /// Bytes in memory, all of which are the start.

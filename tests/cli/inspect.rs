@@ -260,7 +260,7 @@ fn a_real_road_scan_can_be_described_by_options() {
     let wrong = asperity_at(&options.replace("--z-unit mm", "--z-unit um"), &path).result();
     contains_all(&wrong, &["WARNING", "`Depth (mm)` states mm, the description z_unit = \"um\""]);
     let steep = asperity_at(&options.replace("--x-unit mm", "--x-unit um"), &path).error(2);
-    contains_all(&steep, &["steeper than", "1.91441 mm long", "x_unit"]);
+    contains_all(&steep, &["steeper than", "1.914413 mm long", "x_unit"]);
 }
 
 #[test]

@@ -196,5 +196,8 @@ fn every_figure_is_drawn_as_svg_and_png() {
     let again = outcome(&campaign, "plot scans out --to scans.png").error(2);
     assert!(again.contains("--force"), "{again}");
     let unknown = outcome(&campaign, "plot fiction out").error(2);
-    assert!(unknown.contains("there is no figure `fiction`; there are scans"), "{unknown}");
+    assert!(
+        unknown.contains("there is no figure `fiction`; did you mean `friction`?"),
+        "{unknown}"
+    );
 }

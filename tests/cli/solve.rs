@@ -223,7 +223,7 @@ fn bad_options_are_named_with_exit_code_2() {
         (format!("{load} {rest} --modulus 3 --poisson 0.5 --rubber x"), "cannot be used"),
         (format!("{load} {rest} --rubber no/such.toml"), "no/such.toml"),
         (format!("{load} {rest} --points 7"), "from 8 to 16777216"),
-        (format!("{load} {rest} --points -7"), "no whole number"),
+        (format!("{load} {rest} --points -7"), "is not a whole number"),
         (format!("{load} --wave 100:1 {rest} --points 256"), "at least 300, better 6400"),
     ];
     for (arguments, part) in cases {

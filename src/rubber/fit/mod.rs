@@ -80,7 +80,11 @@ pub fn fit_sweeps(sweeps: &[Sweep], options: &FitOptions) -> Result<MasterCurve,
         None => chain::joined(sweeps, options)?,
     };
     let data = problem(&chain);
-    let (fitted, candidates) = terms::choose(&data, options.terms, chain.start())?;
+    let choose = match data.free_verticals {
+        true => terms::choose_with_free_verticals,
+        false => terms::choose,
+    };
+    let (fitted, candidates) = choose(&data, options.terms, chain.start())?;
     Ok(MasterCurve::new(&chain, &fitted, candidates))
 }
 

@@ -80,14 +80,16 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
 
 fn joined(colder: &Sweep, hotter: &Sweep, free_vertical: bool) -> Option<Pair> {
     let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
-    let plain = |ln_shift| {
-        let confirmed = || by_loss().is_some_and(|loss| (loss - ln_shift).abs() < AGREEMENT);
+    let plain = |ln_shift: f64| {
+        let confirmed = || by_loss().is_some_and(|loss: f64| (loss - ln_shift).abs() < AGREEMENT);
         let uncertain = change(colder, hotter) < LEAST_CHANGE && !confirmed();
         Pair { ln_shift, ln_vertical: 0.0, by_loss: false, uncertain }
     };
     if free_vertical {
         let Some(ln_shift) = best_place(colder, hotter, &[ln_loss_factor]) else {
-            return by_storage(colder, hotter).map(plain);
+            // Along a power law of the moduli a vertical factor is as good as a shift.
+            return by_storage(colder, hotter)
+                .map(|ln_shift| Pair { uncertain: true, ..plain(ln_shift) });
         };
         let ln_storage = |point: &SweepPoint| point.storage_modulus.ln();
         let ln_vertical = mean_difference(colder, hotter, ln_shift, ln_storage)?;

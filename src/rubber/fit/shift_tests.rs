@@ -95,14 +95,10 @@ fn polyisoprene_comes_back_with_free_vertical_factors() {
         let truth = polyisoprene().vertical_factor(shift.temperature_c);
         approx::assert_relative_eq!(shift.vertical.unwrap().factor, truth, max_relative = 1e-4);
     }
-    let noisy = fit_sweeps(&polyisoprene_sweeps(0.02, 1), &options(VerticalChoice::Free)).unwrap();
-    assert!(miss(&noisy) < 0.1, "{}", miss(&noisy));
-    let Some(FittedVertical { law: VerticalShift::Power { exponent }, .. }) = noisy.vertical else {
-        panic!("{:?}", noisy.vertical)
-    };
+    let vertical = exact.vertical.as_ref().map(|fitted| fitted.law);
+    let Some(VerticalShift::Power { exponent }) = vertical else { panic!("{vertical:?}") };
     // Density takes a fifth of the growth with temperature: 1 - 6.6e-4 * 298.
-    assert!((exponent - 0.8).abs() < 0.15, "{exponent}");
-    assert!(modulus_miss(&noisy.rubber("pi", 0.49)) < 0.05);
+    assert!((exponent - 0.8).abs() < 0.05, "{exponent}");
 }
 
 /// What the option is for: without it the same sweeps miss.
@@ -189,14 +185,14 @@ fn loss_joins_what_storage_does_not() {
 
 #[test]
 fn what_nothing_joins_is_left_out_and_told() {
-    // Nine decades lie between the first two.
-    let sweeps = glassy_sweeps(&[-60.0, -15.0, -5.0, 5.0, 15.0, 25.0]);
+    // Five decades lie between the first two.
+    let sweeps = glassy_sweeps(&[-40.0, -15.0, -5.0, 5.0, 15.0, 25.0]);
     let fit =
         |reference_c| fit_sweeps(&sweeps, &FitOptions { reference_c, ..FitOptions::default() });
     let joined = fit(None).unwrap();
     assert_eq!(joined.left_out.len(), 1);
-    assert_eq!(joined.left_out[0].temperature_c, -60.0);
+    assert_eq!(joined.left_out[0].temperature_c, -40.0);
     assert_eq!((joined.shifts.len(), joined.reference_c), (5, Some(5.0)));
-    let error = fit(Some(-60.0)).unwrap_err();
+    let error = fit(Some(-40.0)).unwrap_err();
     assert!(matches!(error, FitError::NoOverlap { .. }), "{error}");
 }

@@ -30,6 +30,11 @@ const TRIALS_PER_DECADE: f64 = 4.0;
 const UPDATES: usize = 100;
 /// A contribution to both moduli that is nowhere larger, relative, is none.
 const VANISHING: f64 = 1e-6;
+/// Change of ln a from that by tan δ, which no vertical factor touches, beyond which free factors
+/// have gone astray: a quarter of a decade, ten steps of the search for the latter.
+const FURTHEST_MOVE: f64 = 0.25 * std::f64::consts::LN_10;
+/// Rounds of terms and factors; three are usual.
+const MOST_ROUNDS: usize = 10;
 /// Beyond this condition number of the Jacobian the singular values are round-off.
 const SINGULAR: f64 = 1e12;
 
@@ -56,13 +61,12 @@ pub(super) fn choose(
         let needed = (2 * wanted.unwrap_or(1) + without_terms(data) + 2).div_ceil(2);
         return Err(FitError::TooFewPoints { points: data.data.len(), needed });
     }
-    let first = previous.clone();
     let mut candidates: Vec<Candidate> = Vec::new();
     let mut best: Option<(f64, Fitted)> = None;
     let mut since_best = 0;
     for terms in 1..=wanted.unwrap_or(most) {
         let problem = Prony { terms, ..data.clone() };
-        let found = best_minimum(&problem, &previous, &first);
+        let found = best_minimum(&problem, &previous);
         let (candidate, fitted) = judge(problem, found, &mut previous);
         since_best += 1;
         if let (Some(fitted), Some(criterion)) = (fitted, candidate.bic) {
@@ -90,6 +94,66 @@ pub(super) fn choose(
     }
 }
 
+/// [`choose`] where vertical factors are free: few terms move whole sweeps away from the others and
+/// never find back, so the number of terms is chosen with all factors held, then all are freed from
+/// there, until the number stays.
+///
+/// # Errors
+/// As [`choose`].
+pub(super) fn choose_with_free_verticals(
+    data: &Prony,
+    wanted: Option<usize>,
+    mut start: Series,
+) -> Result<(Fitted, Vec<Candidate>), FitError> {
+    let mut terms = 0;
+    let by_loss_factor = start.ln_shifts.clone();
+    for _ in 0..MOST_ROUNDS {
+        let held = with_factors_held(data, &start);
+        let without_terms =
+            Series { ln_verticals: vec![0.0; data.sweeps], terms: Vec::new(), ..start.clone() };
+        let (chosen, candidates) = choose(&held, wanted, without_terms)?;
+        let problem = Prony { terms: chosen.problem.terms, ..data.clone() };
+        let mut freed = Series {
+            ln_shifts: start.ln_shifts.clone(),
+            ln_verticals: start.ln_verticals.clone(),
+            ..chosen.series
+        };
+        let found = minimise(&problem, problem.pack(&freed));
+        let (candidate, fitted) = judge(problem, found, &mut freed);
+        let (count, unchanged) = (candidate.terms, candidate.terms == terms);
+        let moved = freed.ln_shifts.iter().zip(&by_loss_factor).map(|(a, b)| (a - b).abs());
+        if moved.fold(0.0, f64::max) > FURTHEST_MOVE {
+            let reason = "the moduli follow a power law over some sweeps, along which a vertical factor is as good as a \
+                          shift; give --vertical-shift rho-t, or measure over more frequencies";
+            return Err(FitError::NoFit { terms: wanted, reason });
+        }
+        if let (Some(fitted), true) = (fitted, unchanged || wanted.is_some()) {
+            return Ok((fitted, candidates));
+        }
+        if unchanged {
+            let reason = candidate.rejected.unwrap_or("it did not converge");
+            return Err(FitError::NoFit { terms: wanted, reason });
+        }
+        (terms, start) = (count, freed);
+    }
+    let reason = "with free vertical factors the number of terms does not settle";
+    Err(FitError::NoFit { terms: wanted, reason })
+}
+
+/// The problem with the shifts and vertical factors of a series taken as they are.
+fn with_factors_held(data: &Prony, series: &Series) -> Prony {
+    let mut held = Prony {
+        given_shifts: Some(series.ln_shifts.clone()),
+        free_verticals: false,
+        ..data.clone()
+    };
+    for datum in &mut held.data {
+        datum.ln_storage -= series.ln_verticals[datum.sweep];
+        datum.ln_loss -= series.ln_verticals[datum.sweep];
+    }
+    held
+}
+
 /// As many as leave a degree of freedom beside the variance.
 fn most_determined(data: &Prony) -> usize {
     (2 * data.data.len()).saturating_sub(without_terms(data) + 2) / 2
@@ -112,11 +176,9 @@ fn reduced_range(data: &Prony, shifts: &[f64]) -> [f64; 2] {
     [reduced().fold(f64::INFINITY, f64::min), reduced().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The better of two starts. Few terms with free vertical factors move whole sweeps away from the
-/// others, so that evenly spaced times start from the first shifts again.
-fn best_minimum(problem: &Prony, previous: &Series, first: &Series) -> Option<Minimum> {
-    let shifts = if problem.free_verticals { first } else { previous };
-    let spaced = spaced_start(problem, shifts);
+/// The better of two starts.
+fn best_minimum(problem: &Prony, previous: &Series) -> Option<Minimum> {
+    let spaced = spaced_start(problem, previous);
     let starts = [Some(spaced), inserted_start(problem, previous)];
     let ends = starts.iter().flatten().filter_map(|start| minimise(problem, problem.pack(start)));
     ends.min_by(|a, b| a.rms.total_cmp(&b.rms))

@@ -46,7 +46,7 @@ fn lines_of_a_wyko_file_run_along_y() {
         ("X Size\t3\n", "", "X Size"),
         ("Wavelength\t7\t4\t600.0\n", "", "Wavelength"),
         ("RAW_DATA", "Other", "RAW_DATA"),
-        ("X Size\t3", "X Size\t99999999999", "number of points"),
+        ("X Size\t3", "X Size\t99999999999", "the number of lines"),
         ("-2", "1e999", "`1e999`"),
     ] {
         let error = refused(WYKO.replacen(from, to, 1).as_bytes());

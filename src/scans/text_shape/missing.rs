@@ -86,7 +86,7 @@ pub fn repeated_inside(heights: &[f64]) -> Vec<RepeatedHeight> {
     };
     let mut counts: Vec<(usize, f64)> =
         sorted.chunk_by(|a, b| a == b).map(|equal| (equal.len(), equal[0])).collect();
-    counts.sort_by(|a, b| b.0.cmp(&a.0));
+    counts.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
     let ends_at = |&marks: &usize| {
         let others = counts.get(marks).map_or(0, |next| next.0);
         others > 0 && counts[marks - 1].0 >= FEWEST.max(TIMES_OTHERS * others)
