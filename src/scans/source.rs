@@ -12,7 +12,7 @@ const START: u64 = 1 << 18;
 /// The bytes of a scan file, read once from the start to the end.
 ///
 /// Of a file no more than its first 256 KiB are in memory, unless a format asks for
-/// [`Source::whole`].
+/// the whole.
 pub struct Source<'a> {
     start: Cow<'a, [u8]>,
     rest: Box<dyn Read + 'a>,

@@ -167,7 +167,7 @@ fn a_study_stands_alone_in_its_recipe() {
             "aspect_ratios = []",
         ),
         ("columns = 24", "columns = 25", "sinusoid.columns = 25"),
-        ("pressure_mpa = 1.0", "pressure_mpa = nan", "sinusoid.pressure_mpa = NaN"),
+        ("pressure_mpa = 1.0", "pressure_mpa = nan", "sinusoid.pressure_mpa = nan"),
         ("speeds_mm_s = [10.0]\n[", "speeds_mm_s = [11.0]\n[", "sinusoid.fields.speeds_mm_s"),
         ("pressures_mpa = [0.1, 0.3, 30.0]", "pressures_mpa = [0.3, 0.1]", "pressures_mpa"),
     ] {
