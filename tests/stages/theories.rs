@@ -92,7 +92,10 @@ fn constants_out_of_range_and_repeated_theories_are_refused() {
         Recipe::parse(&text, Path::new("recipe.toml")).unwrap_err().to_string()
     };
     let error = refused("[tables]\ntheories = [\"persson\", \"persson\"]");
-    assert!(error.contains("tables.theories") && error.contains("a list without repeats"), "{error}");
+    assert!(
+        error.contains("tables.theories") && error.contains("a list without repeats"),
+        "{error}"
+    );
     let error = refused("[tables.theory_constants]\npersson_gamma = 1.5");
     assert!(error.contains("persson_gamma = 1.5: must be between 0 and 1"), "{error}");
     let error = refused("[tables.theory_constants]\nklueppel_heinrich_layer_ratio = 0.0");
