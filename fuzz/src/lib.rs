@@ -1,6 +1,10 @@
 //! The readers of scans, compiled from the sources of the project without the rest of it: a
 //! fuzzer instruments all that it links, and solvers and tables would take minutes for nothing.
 
+#[path = "../../src/error_kind.rs"]
+pub mod error_kind;
+#[path = "../../src/files/mod.rs"]
+pub mod files;
 #[path = "../../src/surface/scan.rs"]
 mod scan;
 #[path = "../../src/scans/mod.rs"]

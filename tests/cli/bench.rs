@@ -51,6 +51,7 @@ fn a_document_keeps_its_words_and_gets_a_plot() {
 }
 
 #[test]
+#[ignore = "takes minutes: .ci/full"]
 fn growth_runs_each_size_in_its_own_process() {
     let series = asperity("bench --growth --quick --quiet --format json").json();
     let over: Vec<&str> =
