@@ -12,17 +12,17 @@ mod scales;
 pub use micro::MicroForecast;
 pub use scales::{ScaleForecast, ScaleModel};
 
-use crate::artifact::{ArtifactError, RunView};
+use crate::artifact::{ArtifactError, RunView, SolveStore};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Chain, Recipe, Violation, Work};
 use crate::rubber::Rubber;
 use crate::stages::bem::{
-    CURVES_FILE, CurveRow, FIRST_REALISATIONS, SOLVES_FILE, SolveRow, realisations_needed,
+    self, CURVES_FILE, CurveRow, FIRST_REALISATIONS, SOLVES_FILE, SolveRow, realisations_needed,
 };
 use crate::stages::realise::{Surface, read_surfaces};
-use crate::stages::{Stage, StageError};
+use crate::stages::{Stage, StageError, Watch};
 use serde::Serialize;
 use std::path::Path;
 
@@ -169,6 +169,9 @@ fn run_trial(
         if stage == Stage::Tables {
             continue;
         }
+        if stage == Stage::Bem {
+            demand_attainable(recipe, folder, interrupted)?;
+        }
         let seconds = computed(&trial, folder, stage, interrupted)?;
         if stage == Stage::Bem {
             bem_seconds = seconds;
@@ -177,6 +180,23 @@ fn run_trial(
         }
     }
     Ok((stages, bem_seconds))
+}
+
+/// Refuses an accuracy that the realisations of the recipe are far from giving: the trial has the first
+/// of them alone, which would be refined to it.
+fn demand_attainable(
+    recipe: &Recipe,
+    folder: &Path,
+    interrupted: &Interrupt,
+) -> Result<(), ForecastError> {
+    let (Some(parameters), Some(realise)) = (&recipe.bem, &recipe.realise) else { return Ok(()) };
+    let view = RunView::of(folder);
+    let surfaces = read_surfaces(&view)?;
+    let rubber = bem::rubber(parameters)?.rubber;
+    let store = SolveStore::open(folder.join("trial"))?;
+    let watch = Watch { progress: &|_, _| (), interrupted };
+    let most = realise.drawn() as usize;
+    Ok(bem::demand_attainable(parameters, &rubber, &surfaces, most, &store, watch)?)
 }
 
 /// The recipe without what is dear.
@@ -207,7 +227,7 @@ struct Trial {
 impl Trial {
     fn read(view: &RunView, chain: &Chain) -> Result<Self, ForecastError> {
         Ok(Self {
-            rubber: crate::stages::bem::rubber(chain.bem)?.rubber,
+            rubber: bem::rubber(chain.bem)?.rubber,
             surfaces: read_surfaces(view)?,
             curves: view.read_table::<CurveRow>("bem", CURVES_FILE)?.0,
             solves: view.read_table::<SolveRow>("bem", SOLVES_FILE)?.0,

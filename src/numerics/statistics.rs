@@ -39,12 +39,23 @@ impl MeanEstimate {
         if !(half_width > 0.0 && ratio.is_finite()) {
             return None;
         }
-        // From the normal distribution, whose quantile is below that of Student's.
-        let mut count = ((1.959_963_984 * ratio).powi(2).ceil() as usize).max(2);
-        while student_t_975(count as f64 - 1.0) * ratio > (count as f64).sqrt() {
-            count += 1;
+        let is_enough =
+            |count: usize| student_t_975(count as f64 - 1.0) * ratio <= (count as f64).sqrt();
+        // Doubled until it will do, then halved in between: a step at a time would take as many as the number has.
+        let mut enough = 2;
+        while !is_enough(enough) {
+            enough = enough.checked_mul(2)?;
         }
-        Some(count)
+        let mut too_few = enough / 2;
+        while enough - too_few > 1 {
+            let middle = too_few + (enough - too_few) / 2;
+            if is_enough(middle) {
+                enough = middle;
+            } else {
+                too_few = middle;
+            }
+        }
+        Some(enough)
     }
 }
 
@@ -74,6 +85,13 @@ pub fn least_squares_line(
 /// # Panics
 /// If `degrees_of_freedom` is not positive.
 pub fn student_t_975(degrees_of_freedom: f64) -> f64 {
+    const MANY: f64 = 1e5;
+    const NORMAL: f64 = 1.959_963_984_540_054;
+    if degrees_of_freedom > MANY {
+        // Abramowitz & Stegun 26.7.5; the next term is below 1e-15. The library does not end there.
+        let (z, n) = (NORMAL, degrees_of_freedom);
+        return z + z * (z * z + 1.0) / (4.0 * n);
+    }
     StudentsT::new(0.0, 1.0, degrees_of_freedom)
         .expect("degrees of freedom must be positive")
         .inverse_cdf(0.975)
@@ -131,6 +149,9 @@ mod tests {
         // Of many, (1.96 s / w)^2 = 9604 * 2.5.
         let many = estimate.count_for(0.02).unwrap();
         assert!((24_010..24_020).contains(&many), "{many}");
+        // However many: (1.96 s / w)^2 = 9.6e14.
+        let millions = estimate.count_for(1e-7).unwrap() as f64;
+        approx::assert_relative_eq!(millions, 9.603_647e14, max_relative = 1e-6);
         assert_eq!(estimate.count_for(0.0), None);
         assert_eq!(MeanEstimate::of(&[1.0]).count_for(0.1), None);
         assert_eq!(MeanEstimate::of(&[1.0, 1.0]).count_for(1e-9), Some(2));
@@ -143,6 +164,13 @@ mod tests {
         let without: Vec<f64> = values.iter().map(|value| (sum - value) / 4.0).collect();
         let expected = MeanEstimate::of(&values).confidence_95;
         approx::assert_relative_eq!(jackknife_95(&without), expected, max_relative = 1e-13);
+    }
+
+    #[test]
+    fn quantiles_go_over_into_the_normal_distribution() {
+        let (before, after) = (student_t_975(0.999_99e5), student_t_975(1.000_01e5));
+        approx::assert_relative_eq!(before, after, max_relative = 1e-9);
+        approx::assert_relative_eq!(student_t_975(1e15), 1.959_963_984_540_054);
     }
 
     #[test]

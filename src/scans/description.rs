@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// How a text file, or a sheet of a workbook (.xlsx), holds a line scan or a height map: one line per
 /// point, positions and heights in columns.
 ///
-/// The file is read in this order: `encoding`, `skip_lines`, `skip_until`, column names, points,
-/// cuts. Cells of a sheet are cells already: `separator` and `encoding` do nothing there.
+/// The file is read in this order: `encoding`, `skip_lines`, `skip_until`, column names, points
+/// up to `stop_at`, cuts. Cells of a sheet are cells already: `separator` and `encoding` do nothing there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TextFormat {
@@ -31,6 +31,10 @@ pub struct TextFormat {
     /// `*****DATA*****`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub skip_until: Option<String>,
+    /// The points end before the first line after them that starts with this text, for instance
+    /// `*****END*****`, which has to come.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop_at: Option<String>,
     /// Whether a line of column names stands before the first point.
     #[serde(default = "yes")]
     pub header: bool,
@@ -166,6 +170,12 @@ impl TextFormat {
             return Err(missing_unit("z_unit"));
         }
         self.validate_characters()?;
+        if self.stop_at.as_ref().is_some_and(|text| text.trim().is_empty()) {
+            return Err(description(
+                "stop_at",
+                "is empty; give the start of a line, or leave it out",
+            ));
+        }
         for (key, value) in [("cut_start_mm", self.cut_start_mm), ("cut_end_mm", self.cut_end_mm)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(description(key, format!("is {value}; give a length of 0 or more")));

@@ -58,6 +58,10 @@ pub enum ScanProblem {
     SkippedAll { lines: usize, skip_lines: usize },
     #[error("no line starts with the marker `{marker}` (skip_until)")]
     NoMarker { marker: String },
+    #[error(
+        "no line behind the points starts with `{marker}` (stop_at): the file may have been cut; if it is whole, leave stop_at out"
+    )]
+    NoFooter { marker: String },
     #[error("there is no column `{wanted}`; the columns are {present}; check `separator` as well")]
     UnknownColumn { wanted: String, present: String },
     #[error("{count} columns are named `{wanted}`; give the number of the column")]

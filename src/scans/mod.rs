@@ -14,6 +14,7 @@ pub mod file;
 mod last_number;
 mod lattice;
 mod lines;
+mod packed;
 mod source;
 pub mod spreadsheet;
 mod text;

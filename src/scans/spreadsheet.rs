@@ -5,17 +5,13 @@
 //! program turned into a date is no number. Before the reader of workbooks sees the file, its
 //! members are unpacked piece by piece to see that they stay within limits.
 
-use crate::scans::ScanProblem;
 use crate::scans::description::{Column, DecimalMark};
+use crate::scans::{ScanProblem, packed};
 use calamine::{DataRef, Reader, Xlsx, XlsxError};
 use std::fmt::Write;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
-/// Largest unpacked size over packed size of a sheet that is large.
-const LARGEST_RATIO: u64 = 200;
-/// Unpacked size up to which a member may be packed as tightly as it likes.
-const SMALL_MEMBER: u64 = 1 << 20;
 /// Room for shared texts, styles and the like, and for the text of the sheet: this and so many
 /// times the size of the file.
 const ROOM: u64 = 1 << 22;
@@ -222,7 +218,7 @@ fn check_members(bytes: &[u8]) -> Result<(), ScanProblem> {
             continue;
         }
         let is_sheet = name.contains("worksheets/");
-        let by_ratio = member.compressed_size().saturating_mul(LARGEST_RATIO).max(SMALL_MEMBER);
+        let by_ratio = packed::limit(member.compressed_size());
         let limit = if is_sheet { by_ratio } else { by_ratio.min(room) };
         let size = unpacked_size(member, limit, is_sheet).map_err(|error| damaged(&error))?;
         if size > limit {

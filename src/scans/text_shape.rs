@@ -21,7 +21,7 @@ use crate::scans::spreadsheet::{Book, is_workbook};
 use crate::scans::thousands::thousands_mark;
 use layout::{Body, Layout};
 pub use missing::{RepeatedHeight, repeated_inside};
-use names::{comment_of, is_comment, marker, regrouped, states_unit, unit_in, unit_of_two};
+use names::{comment_of, footer, is_comment, marker, regrouped, states_unit, unit_in, unit_of_two};
 
 /// Lines by which separator, decimal mark and columns are found; more say nothing new.
 const MOST_LINES: usize = 2000;
@@ -47,6 +47,8 @@ pub struct TextShape {
     pub skip_lines: usize,
     /// The line before the names of the columns, if it marks the start of the data.
     pub skip_until: Option<String>,
+    /// The start of the first written line behind the points.
+    pub stop_at: Option<String>,
     /// Whether a line of names stands before the points.
     pub header: bool,
     /// The columns; empty ones at the end of the lines are left out.
@@ -279,6 +281,7 @@ fn describe(
         comment: comment.filter(|_| commented),
         skip_lines: if commented { 0 } else { preamble.len() },
         skip_until,
+        stop_at: footer(text, layout, body, comment),
         header,
         columns: (0..width).map(column).collect(),
         rows: body.rows(),

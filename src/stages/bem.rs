@@ -1,5 +1,6 @@
 //! bem: sliding contact of the viscoelastic half-space, for every realisation and speed.
 
+mod attainable;
 mod curve;
 mod family;
 mod reduction;
@@ -13,6 +14,7 @@ use crate::artifact::{ArrayDataset, Metadata, Pending, RunView, SolveStore, Stor
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::recipe::{Violation, demand};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
+pub(crate) use attainable::demand_attainable;
 use curve::FieldSolution;
 use family::{CurveResult, Family};
 pub(crate) use family::{FIRST_REALISATIONS, realisations_needed};
@@ -182,7 +184,7 @@ pub fn rubber(parameters: &Bem) -> Result<RubberData, StageError> {
 ///
 /// # Errors
 /// [`StageError::Contact`] for a curve that cannot be had, the one that failed first in time;
-/// [`StageError::Interrupted`]. Solves that are done are kept in the store.
+/// [`StageError::TooFewRealisations`]; [`StageError::Interrupted`]. Solves that are done are kept in the store.
 pub fn run(
     parameters: &Bem,
     material: &RubberData,
@@ -191,6 +193,7 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
+    demand_for_all(parameters, &material.rubber, &surfaces, store, context.watch)?;
     let mut families = families(parameters, &surfaces);
     Work::new(parameters, &material.rubber, store, context.watch).solve_all(&mut families)?;
     write(&mut context.pending, &families)?;
@@ -211,8 +214,24 @@ pub fn missing(
     store: &SolveStore,
     watch: Watch,
 ) -> Result<Vec<Task>, StageError> {
+    demand_for_all(parameters, rubber, surfaces, store, watch)?;
     let mut families = families(parameters, surfaces);
     Work::new(parameters, rubber, store, watch).missing(&mut families)
+}
+
+/// [`demand_attainable`] of the realisations that there are of every approximation.
+fn demand_for_all(
+    parameters: &Bem,
+    rubber: &Rubber,
+    surfaces: &[Surface],
+    store: &SolveStore,
+    watch: Watch,
+) -> Result<(), StageError> {
+    let of_each = surfaces.chunk_by(|a, b| a.waves == b.waves);
+    for of_one in of_each.filter(|of_one| of_one.len() > FIRST_REALISATIONS) {
+        demand_attainable(parameters, rubber, of_one, of_one.len(), store, watch)?;
+    }
+    Ok(())
 }
 
 fn families<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Family<'a>> {

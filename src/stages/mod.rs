@@ -291,6 +291,27 @@ pub enum StageError {
         /// Why.
         source: Box<crate::contact::curve::CurveError<SolveError>>,
     },
+    /// An accuracy of the averages that the realisations are far from giving.
+    #[error(
+        "the relative accuracy {tolerance:?} asks for about {needed:.0e} realisations of {waves} waves at {speed_mm_s} \
+         mm/s, by the spread of the first: {most} may be drawn (realise.most_realisations), which give about \
+         {attainable:.1e}; ask for that with tolerance, or allow more realisations",
+        needed = *needed as f64
+    )]
+    TooFewRealisations {
+        /// Number of waves.
+        waves: u32,
+        /// Speed in mm/s.
+        speed_mm_s: f64,
+        /// The wanted relative accuracy.
+        tolerance: f64,
+        /// Realisations that it asks for.
+        needed: usize,
+        /// Realisations that may be drawn.
+        most: usize,
+        /// Relative accuracy that these give.
+        attainable: f64,
+    },
     /// A surface whose waves are all steeper than the threshold.
     #[error(
         "approximation {waves}: no wave is less steep than {threshold}, nothing is left for the macro surface; raise micro.rms_slope_threshold"
@@ -391,7 +412,7 @@ impl HasKind for StageError {
             | Self::NoMacroscale { .. }
             | Self::NoRelaxation { .. }
             | Self::Published { .. } => ErrorKind::Input,
-            Self::NoMicroscale { .. } => ErrorKind::Failure,
+            Self::NoMicroscale { .. } | Self::TooFewRealisations { .. } => ErrorKind::Failure,
             Self::Interrupted => ErrorKind::Interrupted,
         }
     }

@@ -63,6 +63,7 @@ fn heights_alone(separator: Separator, header: bool) -> TextFormat {
         comment: None,
         skip_lines: 0,
         skip_until: None,
+        stop_at: None,
         header,
         x_column: None,
         x_spacing_um: Some(1.0),

@@ -67,6 +67,9 @@ pub(in crate::cli) struct ScanOptions {
     /// Skip all lines up to and with the first that starts with this text.
     #[arg(long, value_name = "TEXT")]
     skip_until: Option<String>,
+    /// The points end before the first line that starts with this text.
+    #[arg(long, value_name = "TEXT")]
+    stop_at: Option<String>,
     /// A cell that marks a missing height, such as -25400; repeat it for more. Replaces the default:
     /// empty cells, NaN and BAD.
     #[arg(long, value_name = "TEXT", default_values = ["", "NaN", "BAD"], allow_hyphen_values = true)]
@@ -102,6 +105,7 @@ impl ScanOptions {
             ("--comment", self.comment.is_some()),
             ("--skip-lines", self.skip_lines > 0),
             ("--skip-until", self.skip_until.is_some()),
+            ("--stop-at", self.stop_at.is_some()),
             ("--missing", self.missing != default_missing),
             ("--encoding", self.encoding != "utf-8"),
             ("--cut-start-mm", self.cut_start_mm != 0.0),
@@ -188,6 +192,7 @@ impl ScanOptions {
             comment: self.comment,
             skip_lines: self.skip_lines,
             skip_until: self.skip_until.clone(),
+            stop_at: self.stop_at.clone(),
             header: !self.no_header,
             x_column: self.x_column.clone(),
             x_spacing_um: self.x_spacing_um,

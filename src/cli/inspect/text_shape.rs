@@ -33,6 +33,9 @@ pub(super) struct TextShape {
     /// Lines before the names of the columns or the points.
     skip_lines: usize,
     skip_until: Option<String>,
+    /// Start of the line behind the points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stop_at: Option<String>,
     header: bool,
     columns: Vec<Column>,
     points: usize,
@@ -114,6 +117,7 @@ impl TextShape {
             comment: shape.comment,
             skip_lines: shape.skip_lines,
             skip_until: shape.skip_until,
+            stop_at: shape.stop_at,
             header: shape.header,
             columns: shape.columns.into_iter().map(column).collect(),
             points: shape.rows,
@@ -147,6 +151,12 @@ impl TextShape {
             Some(marker) => format!("{} lines, the last is `{marker}`", self.skip_lines),
             None => format!("{} lines to skip", self.skip_lines),
         };
+        let points = match &self.stop_at {
+            Some(footer) => {
+                format!("{}, behind them a line that begins with `{footer}`", self.points)
+            }
+            None => self.points.to_string(),
+        };
         let um = |metres: f64| significant(metres * 1e6) + " um";
         let numbers = match (&self.read, &self.unread) {
             (Some(read), _) => format!(
@@ -178,7 +188,7 @@ impl TextShape {
             ("before the columns", before),
             ("column names", if self.header { "yes" } else { "no" }.into()),
             ("columns", columns.join("\n")),
-            ("lines of points", self.points.to_string()),
+            ("lines of points", points),
             (
                 "missing marks",
                 self.missing_marks

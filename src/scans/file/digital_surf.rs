@@ -7,8 +7,9 @@
 use super::bytes::{Cursor, Number, count, holds};
 use super::error::{FileProblem, Place, unexpected};
 use super::heights::{Binary, Checked};
-use super::{OpenScan, grid, packed, spacing};
+use super::{OpenScan, grid, spacing};
 use crate::scans::Source;
+use crate::scans::packed;
 use flate2::read::ZlibDecoder;
 use std::io::{self, Read, Take};
 

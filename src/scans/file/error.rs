@@ -112,7 +112,7 @@ pub enum FileProblem {
     #[error(
         "{place}: {packed} bytes unpack to {unpacked}, more than {} times as many: no scan is packed as tightly; ask \
          where the file comes from, or save it without compression",
-        super::packed::LARGEST_RATIO
+        super::super::packed::LARGEST_RATIO
     )]
     Ratio {
         /// Where they are.

@@ -25,7 +25,6 @@ mod gwyddion;
 mod heights;
 mod lines;
 mod opencrg;
-mod packed;
 mod sdf;
 mod sdf_write;
 mod smats;

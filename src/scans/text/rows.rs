@@ -16,6 +16,10 @@ pub(super) struct Rows<'a> {
     comment: Option<char>,
     separator: Separator,
     quotes: Quotes,
+    /// Start of the first line behind the points.
+    stop_at: Option<String>,
+    /// Whether it has come.
+    stopped: bool,
     /// Whether a blank line stands before the record last read, or is that record.
     after_blank_line: bool,
 }
@@ -28,21 +32,30 @@ impl<'a> Rows<'a> {
             comment: format.comment,
             separator,
             quotes: Quotes::new(separator),
+            stop_at: format.stop_at.as_ref().map(|text| text.trim().to_owned()),
+            stopped: false,
             after_blank_line: false,
         }
     }
 
-    /// Reads the next line into `record`; false at the end of the text.
+    /// Reads the next line into `record`; false at the end of the points.
     ///
     /// Every line is a record of its own: where a cell opens a quotation mark that is not closed,
     /// the points up to the next such mark would be lost in it.
     pub(super) fn read(&mut self, record: &mut StringRecord) -> Result<bool, Located> {
         self.after_blank_line = false;
         record.clear();
-        let Self { lines, separator, comment, .. } = self;
+        if self.stopped {
+            return Ok(false);
+        }
+        let Self { lines, separator, comment, stop_at, .. } = self;
         let is_comment = |line: &str| comment.is_some_and(|comment| line.starts_with(comment));
         while let Some(line) = lines.next()? {
             let text = line.trim();
+            if stop_at.as_ref().is_some_and(|stop| text.starts_with(stop)) {
+                self.stopped = true;
+                return Ok(false);
+            }
             self.after_blank_line = self.after_blank_line || text.is_empty();
             let complete = match separator.character() {
                 None if text.is_empty() || is_comment(text) => continue,
@@ -57,7 +70,13 @@ impl<'a> Rows<'a> {
             };
             return complete.map(|()| true).map_err(|problem| (Some(lines.number()), problem));
         }
-        Ok(false)
+        match &self.stop_at {
+            None => Ok(false),
+            Some(marker) => {
+                let marker = marker.clone();
+                Err((None, self.ends_with(ScanProblem::NoFooter { marker })))
+            }
+        }
     }
 
     /// Reads the column names: as [`Rows::read`], but a name in quotation marks may go on over

@@ -110,6 +110,19 @@ fn heights_alone_get_positions_from_the_spacing() {
 }
 
 #[test]
+fn the_points_end_at_the_footer_which_has_to_come() {
+    let text = "x,z\n0,1\n1,2\n\n  Ra,12.5\nend of file\n";
+    let scan = parse_text("a", text.as_bytes(), &simple("stop_at = 'Ra'")).unwrap();
+    assert_eq!(scan.heights, [1e-3, 2e-3]);
+    let cut =
+        "scan: no line behind the points starts with `Rq` (stop_at): the file may have been cut";
+    assert_fails("x,z\n0,1\n1,2\n", &simple("stop_at = 'Rq'"), cut);
+    assert_fails(text, &simple("stop_at = 'Rq'"), "scan, line 5, column 1: `Ra` is not a number");
+    assert_fails(text, &simple("stop_at = ' '"), "scan: stop_at is empty");
+    assert_fails("x,z\nRa,1\n", &simple("stop_at = 'Ra'"), "scan: too few points: 0");
+}
+
+#[test]
 fn the_preamble_is_skipped_by_count_and_by_marker() {
     let text = "data 1,2\nname,\"x\n*DATA*,,\nx,z\n0,1\n1,2\n";
     let scan = parse_text("a", text.as_bytes(), &simple("skip_until = '*DATA*'")).unwrap();

@@ -60,7 +60,7 @@ impl Layout {
         record.iter().map(|cell| cell.trim().to_owned()).collect()
     }
 
-    fn numbers(self, line: &str) -> Option<Vec<f64>> {
+    pub(super) fn numbers(self, line: &str) -> Option<Vec<f64>> {
         let cells = self.cells(line);
         let numbers: Vec<f64> =
             cells.iter().map(|cell| self.number(cell)).collect::<Option<_>>()?;

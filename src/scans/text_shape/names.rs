@@ -1,5 +1,7 @@
 //! What the lines before the points say: names of columns, units, the mark where data begin.
 
+use super::layout::{Body, Layout};
+use crate::scans::decode::lines;
 use crate::scans::description::LengthUnit;
 
 /// Character that starts the lines before the points.
@@ -27,6 +29,28 @@ pub(super) fn marker(preamble: &[&str], cells: impl Fn(&str) -> Vec<String>) -> 
     };
     let alone = before.iter().all(|line| !line.trim_start().starts_with(text));
     alone.then(|| text.to_owned())
+}
+
+/// The start of the first written line behind the points, up to its first number. None if it is a comment or begins
+/// with a number, and none if points follow: what stands between points is a fault that the reader has to name.
+pub(super) fn footer(
+    text: &str,
+    layout: Layout,
+    body: &Body,
+    comment: Option<char>,
+) -> Option<String> {
+    /// Of a sentence, the start tells it well enough.
+    const LONGEST: usize = 40;
+    let behind = || lines(text).skip(body.start + body.rows());
+    let line = behind().map(str::trim).find(|line| line.chars().any(char::is_alphanumeric))?;
+    let is_point =
+        |line: &str| layout.numbers(line).is_some_and(|numbers| numbers.len() == body.width);
+    if is_comment(line, comment) || behind().any(is_point) {
+        return None;
+    }
+    let words: String = line.chars().take(LONGEST).take_while(|c| !c.is_ascii_digit()).collect();
+    let start = words.trim_end_matches(|c: char| !c.is_alphabetic() && !"*[]-=<>#".contains(c));
+    start.chars().any(char::is_alphabetic).then(|| start.to_owned())
 }
 
 fn is_framed(line: &str) -> bool {

@@ -33,6 +33,7 @@ impl TextShape {
             comment: self.comment,
             skip_lines: if self.skip_until.is_some() { 0 } else { self.skip_lines },
             skip_until: self.skip_until.clone(),
+            stop_at: self.stop_at.clone(),
             header: self.header,
             x_column: x.map(|x| self.column(x)),
             x_spacing_um: None,
@@ -104,6 +105,9 @@ impl TextShape {
             Some(marker) => line(format!("skip_until = {}", quoted(marker))),
             None if self.skip_lines > 0 => line(format!("skip_lines = {}", self.skip_lines)),
             None => {}
+        }
+        if let Some(footer) = &self.stop_at {
+            line(format!("stop_at = {}", quoted(footer)));
         }
         if !self.header {
             line("header = false".into());

@@ -38,6 +38,25 @@ fn a_preamble_with_a_marker_and_a_counter_is_seen_through() {
 }
 
 #[test]
+fn a_footer_is_proposed_where_points_end_and_a_fault_between_points_is_not_one() {
+    let points = |from: usize| -> String {
+        (from..from + 4).map(|k| format!("{k},{}.5\n", k % 3)).collect()
+    };
+    let text = format!("x (mm),z (um)\n{}\nRa (um),1.25\n\"Signed\",A. Nobody\n", points(0));
+    let found = shape(text.as_bytes());
+    assert_eq!((found.stop_at.as_deref(), found.rows), (Some("Ra (um"), 4));
+    let scan = parse_text("a", text.as_bytes(), &description(&found)).unwrap();
+    assert_eq!(scan.heights.len(), 4);
+    let fault = format!("x (mm),z (um)\n{}error in line\n{}", points(0), points(4));
+    let found = shape(fault.as_bytes());
+    assert_eq!(found.stop_at, None);
+    let error = parse_text("a", fault.as_bytes(), &description(&found)).unwrap_err();
+    assert_eq!(error.line, Some(6), "{error}");
+    let whole = format!("x (mm),z (um)\n{}\n  \n", points(0));
+    assert_eq!(shape(whole.as_bytes()).stop_at, None);
+}
+
+#[test]
 fn decimal_commas_latin1_and_quoted_cells() {
     let text = b"Pr\xfcfer;M\xfcller\n\"Weg [mm]\";\"H\xf6he [\xb5m]\"\n\"0,0\";\"12,5\"\n\"0,1\";\"-3,25\"\n";
     let found = shape(text);

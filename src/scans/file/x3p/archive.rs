@@ -4,7 +4,7 @@
 //! nothing is ever written under a name from the archive.
 
 use super::super::error::{FileProblem, Place};
-use super::super::packed;
+use crate::scans::packed;
 use md5::{Digest, Md5};
 use std::io::{self, Cursor, Read, Take};
 use zip::ZipArchive;

@@ -1,6 +1,6 @@
 //! The one rule for all that is compressed: how far it may unpack.
 
-use super::error::{FileProblem, Place};
+use super::file::{FileProblem, Place};
 
 /// Largest unpacked size over packed size of what is large. Deflate reaches a thousand on zeros,
 /// heights of instruments stay below ten.
