@@ -111,6 +111,10 @@ pub struct HybridRow {
     /// the smallest one sampled.
     #[schemars(extend("unit" = "1"))]
     pub contact_points_fraction: f64,
+    /// Share of the load on macro points whose local pressure is beyond full contact of the microscale on
+    /// the half-space, where its waves are pressed flat and the correction says least.
+    #[schemars(extend("unit" = "1"))]
+    pub load_beyond_full_contact: f64,
     /// Largest local pressure.
     #[schemars(extend("unit" = "MPa"))]
     pub largest_pressure_mpa: f64,
@@ -124,7 +128,7 @@ pub struct HybridRow {
 
 impl Row for HybridRow {
     const SCHEMA: &'static str = "asperity.hybrid.curves";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
 /// One local correction: the macro points over one period of the microscale, averaged.
@@ -219,7 +223,33 @@ pub fn run(
              warns why"
         )
     });
-    Ok(beyond.into_iter().chain(unsampled).collect())
+    Ok(beyond.into_iter().chain(unsampled).chain(pressed_flat(&rows)).collect())
+}
+
+/// Beyond this share of the load a correction is mostly that of waves that are pressed flat.
+const MUCH_BEYOND_FULL_CONTACT: f64 = 0.2;
+
+/// A warning for every speed at which much of the load is beyond full contact of the microscale.
+fn pressed_flat(rows: &[HybridRow]) -> Vec<String> {
+    let mut speeds: Vec<f64> = rows.iter().map(|row| row.speed_mm_s).collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let at_speed = |speed: f64| {
+        let own = rows.iter().filter(|row| row.speed_mm_s == speed);
+        let most =
+            own.max_by(|a, b| a.load_beyond_full_contact.total_cmp(&b.load_beyond_full_contact))?;
+        let share = most.load_beyond_full_contact;
+        (share > MUCH_BEYOND_FULL_CONTACT).then(|| {
+            format!(
+                "{speed} mm/s: up to {:.0} % of the load is on points where the microscale is pressed flat, and its \
+                 correction says least (contact area {}, {} waves; load_beyond_full_contact in {HYBRID_FILE})",
+                100.0 * share,
+                most.contact_area_fraction,
+                most.waves
+            )
+        })
+    };
+    speeds.into_iter().filter_map(at_speed).collect()
 }
 
 fn one_surface(
@@ -249,7 +279,7 @@ fn one_surface(
             source.in_stage(|source| StageError::Microscale { owners, speed_mm_s, source })
         };
         let sampled = microscale(parameters, surface, speed_mm_s, data).map_err(failed)?;
-        let Some((microscale, law)) = sampled else {
+        let Some((microscale, law, full_contact)) = sampled else {
             rows.extend(at_one_speed.iter().map(|curve| beyond(curve, 0.0, 0.0)));
             continue;
         };
@@ -277,21 +307,22 @@ fn one_surface(
                     running_mean(&solution.pressure, points.round() as usize)
                 }
             };
-            rows.push(corrected(parameters, curve, &microscale, &local, solution.residual));
+            let residual = solution.residual;
+            rows.push(corrected(parameters, curve, &microscale, full_contact, &local, residual));
             locals.extend(local_rows(curve, &microscale, &solution, period, cell));
         }
     }
     Ok((rows, locals))
 }
 
-/// The microscale of a surface at a speed and the law that its macro surface meets; none without a
-/// sample.
+/// The microscale of a surface at a speed, the law that its macro surface meets and the pressure in Pa of its
+/// full contact on the half-space; none without a sample.
 fn microscale(
     parameters: &Hybrid,
     surface: &Surface,
     speed_mm_s: f64,
     data: &Data,
-) -> Result<Option<(Microscale, LocalLaw)>, SolveError> {
+) -> Result<Option<(Microscale, LocalLaw, f64)>, SolveError> {
     let of = |waves: u32, realisation: u32, speed: f64| {
         waves == surface.waves
             && [0, surface.realisation].contains(&realisation)
@@ -331,13 +362,15 @@ fn microscale(
         &pressures,
         samples.iter().map(|row| row.discretisation_error).collect(),
     );
-    Ok(Some((microscale, law)))
+    let full_contact = rows.iter().map(|row| row.pressure_pa).fold(0.0, f64::max);
+    Ok(Some((microscale, law, full_contact)))
 }
 
 fn corrected(
     parameters: &Hybrid,
     curve: &CurveRow,
     microscale: &Microscale,
+    full_contact: f64,
     local: &[f64],
     residual: f64,
 ) -> HybridRow {
@@ -360,11 +393,19 @@ fn corrected(
             .zip(curve.discretisation_error)
             .map(|(mesh, grid)| mesh + grid),
         contact_points_fraction: points as f64 / local.len() as f64,
+        load_beyond_full_contact: share_beyond(local, full_contact),
         largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max) / 1e6,
         largest_sample_mpa: microscale.largest_pressure() / 1e6,
         residual,
         ..uncorrected(curve)
     }
+}
+
+/// Share of the load of the local pressures at those above `full_contact`.
+fn share_beyond(local: &[f64], full_contact: f64) -> f64 {
+    let load: f64 = local.iter().sum();
+    let beyond: f64 = local.iter().filter(|pressure| **pressure > full_contact).sum();
+    if load > 0.0 { beyond / load } else { 0.0 }
 }
 
 /// No correction, because a local pressure in Pa is beyond the largest one that was sampled.
@@ -397,6 +438,7 @@ fn uncorrected(curve: &CurveRow) -> HybridRow {
         discretisation_error: curve.discretisation_error,
         left_out_error: curve.left_out_error,
         contact_points_fraction: 0.0,
+        load_beyond_full_contact: 0.0,
         largest_pressure_mpa: 0.0,
         largest_sample_mpa: 0.0,
         residual: 0.0,
@@ -432,4 +474,32 @@ fn local_rows(
             })
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_of_the_load_beyond_full_contact_is_weighted_by_pressure_and_warned_of() {
+        assert_eq!(share_beyond(&[0.0, 1.0, 2.0, 5.0], 2.0), 0.625);
+        assert_eq!(share_beyond(&[0.0, 0.0], 2.0), 0.0);
+        let row = |speed_mm_s, load_beyond_full_contact| {
+            let curve = CurveRow {
+                waves: 8,
+                realisation: 1,
+                speed_mm_s,
+                contact_area_fraction: 0.05,
+                pressure_mpa: 1.0,
+                friction_coefficient: 0.5,
+                interpolation_error: 0.0,
+                discretisation_error: None,
+                left_out_error: 0.0,
+            };
+            HybridRow { load_beyond_full_contact, ..uncorrected(&curve) }
+        };
+        let warnings = pressed_flat(&[row(10.0, 0.1), row(50.0, 0.05), row(10.0, 0.42)]);
+        assert_eq!(warnings.len(), 1);
+        assert!(warnings[0].starts_with("10 mm/s: up to 42 % of the load"), "{}", warnings[0]);
+    }
 }

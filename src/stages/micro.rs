@@ -2,6 +2,7 @@
 //! half-space and at finite deformation.
 
 mod curve;
+mod monotony;
 mod task;
 
 use super::bem::{CURVES_FILE, CurveRow};
@@ -204,7 +205,7 @@ pub fn run(
             Ok(result)
         })
         .collect::<Result<_, StageError>>()?;
-    if let Some(reason) = results.iter().find_map(|result| result.warning.clone())
+    if let Some(reason) = results.iter().find_map(|result| result.warnings.first().cloned())
         && results.iter().all(|result| result.samples.is_empty())
     {
         return Err(StageError::NoMicroscale { reason });
@@ -216,7 +217,7 @@ pub fn run(
     context.pending.write_table(SAMPLES_FILE, &samples, &none)?;
     let laws: Vec<_> = results.iter().flat_map(|r| r.law.iter().cloned()).collect();
     context.pending.write_table(LAW_FILE, &laws, &none)?;
-    let mut warnings: Vec<String> = results.into_iter().filter_map(|r| r.warning).collect();
+    let mut warnings: Vec<String> = results.into_iter().flat_map(|r| r.warnings).collect();
     if tasks.is_empty() {
         warnings.push(format!(
             "no wave is steeper than {} (micro.rms_slope_threshold): nothing to correct",
@@ -264,7 +265,7 @@ pub(crate) fn same_waves(left: &[Wave], right: &[Wave]) -> bool {
 struct TaskResult {
     samples: Vec<SampleRow>,
     law: Vec<LawRow>,
-    warning: Option<String>,
+    warnings: Vec<String>,
 }
 
 impl TaskResult {
@@ -277,7 +278,7 @@ impl TaskResult {
             let owned = |row: &LawRow| LawRow { waves, realisation, ..row.clone() };
             law.extend(self.law.iter().map(owned));
         }
-        Self { samples, law, warning: self.warning }
+        Self { samples, law, warnings: self.warnings }
     }
 }
 

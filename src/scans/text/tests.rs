@@ -118,7 +118,11 @@ fn the_points_end_at_the_footer_which_has_to_come() {
         "scan: no line behind the points starts with `Rq` (stop_at): the file may have been cut";
     assert_fails("x,z\n0,1\n1,2\n", &simple("stop_at = 'Rq'"), cut);
     assert_fails(text, &simple("stop_at = 'Rq'"), "scan, line 5, column 1 (`x`): `Ra` is not");
-    assert_fails(text, &simple("stop_at = ' '"), "scan: stop_at is empty");
+    assert_fails(
+        text,
+        &simple("stop_at = ' '"),
+        "scan: the key `stop_at` of its description is empty",
+    );
     assert_fails("x,z\nRa,1\n", &simple("stop_at = 'Ra'"), "scan: too few points: 0");
 }
 

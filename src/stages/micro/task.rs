@@ -1,7 +1,7 @@
 //! One microscale at one speed: what it is pressed by, and its sampling, on any machine.
 
 use super::curve::{MicroCurve, problem};
-use super::{Micro, TaskResult, columns, same_waves};
+use super::{Micro, TaskResult, columns, monotony, same_waves};
 use crate::artifact::{ArtifactError, Digest, SolveStore};
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{LocalLaw, SoftContact};
@@ -184,7 +184,11 @@ impl Task {
             curve.estimate_mesh_error(&mut samples).map_err(failed)?;
         }
         curve.finish(&self.key(parameters, rubber))?;
-        Ok(TaskResult { samples, law: rows, warning })
+        let mut warnings: Vec<String> = warning.into_iter().collect();
+        let odd = monotony::breaks(&samples);
+        let (owners, speed_mm_s) = (self.owner_names(), self.speed_mm_s);
+        warnings.extend(odd.map(|what| format!("{owners}, {speed_mm_s} mm/s: {what}")));
+        Ok(TaskResult { samples, law: rows, warnings })
     }
 
     /// The largest local pressure in Pa that the macro contacts reach.

@@ -1,0 +1,103 @@
+//! What every contact does as it is pressed harder: its area grows and its separation falls. A microscale that
+//! does otherwise shows its mesh, or a part of the rubber that has turned over.
+
+use super::{COLUMNS_KEY, SampleRow};
+
+/// Changes below this, relative to the largest value, are round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Where the contact area at finite deformation falls or the mean separation rises, from samples at ascending
+/// pressures, in words; none if nowhere. Of several places the largest.
+pub(super) fn breaks(samples: &[SampleRow]) -> Option<String> {
+    let area = largest_rise(samples, |row| -row.area_finite_deformation);
+    let separation = largest_rise(samples, |row| row.separation_finite_deformation_mm);
+    let words = |what, place: Option<Place>, value: fn(&SampleRow) -> f64, unit| {
+        let Place { before, after } = place?;
+        Some(format!(
+            "{what} from {:.5}{unit} at {:.3} MPa to {:.5}{unit} at {:.3} MPa",
+            value(before),
+            before.pressure_mpa,
+            value(after),
+            after.pressure_mpa
+        ))
+    };
+    let found: Vec<String> = [
+        words("the contact area falls", area, |row| row.area_finite_deformation, ""),
+        words(
+            "the mean separation rises",
+            separation,
+            |row| row.separation_finite_deformation_mm,
+            " mm",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "of the microscale at finite deformation {}, as that of no contact does; try another {COLUMNS_KEY} \
+             and do not trust corrections beyond",
+            found.join(", and ")
+        )
+    })
+}
+
+struct Place<'a> {
+    before: &'a SampleRow,
+    after: &'a SampleRow,
+}
+
+/// The neighbours between which the value rises most, if it does.
+fn largest_rise(samples: &[SampleRow], value: impl Fn(&SampleRow) -> f64) -> Option<Place<'_>> {
+    let rise = |pair: &&[SampleRow]| value(&pair[1]) - value(&pair[0]);
+    let scale = samples.iter().map(|row| value(row).abs()).fold(0.0, f64::max);
+    let largest = samples.windows(2).max_by(|a, b| rise(a).total_cmp(&rise(b)))?;
+    (rise(&largest) > ROUND_OFF * scale).then(|| Place { before: &largest[0], after: &largest[1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(pressure_mpa: f64, area: f64, separation_mm: f64) -> SampleRow {
+        SampleRow {
+            waves: 8,
+            realisation: 0,
+            speed_mm_s: 10.0,
+            pressure_mpa,
+            friction_half_space: 0.5,
+            friction_finite_deformation: 0.4,
+            friction_from_heat: 0.4,
+            area_half_space: area,
+            area_finite_deformation: area,
+            separation_half_space_mm: separation_mm,
+            separation_finite_deformation_mm: separation_mm,
+            interpolation_error: 0.0,
+            discretisation_error: None,
+            residual: 0.0,
+            newton_steps: 5,
+            seconds: 0.0,
+        }
+    }
+
+    #[test]
+    fn what_grows_and_falls_as_it_should_is_not_mentioned() {
+        assert_eq!(breaks(&[row(1.0, 0.1, 0.03), row(2.0, 0.2, 0.02), row(4.0, 0.2, 0.01)]), None);
+        assert_eq!(breaks(&[row(1.0, 0.1, 0.03)]), None);
+        assert_eq!(breaks(&[]), None);
+    }
+
+    #[test]
+    fn a_falling_area_and_a_rising_separation_are_named_with_their_pressures() {
+        let samples =
+            [row(1.0, 0.1, 0.03), row(2.0, 0.3, 0.02), row(4.0, 0.25, 0.01), row(8.0, 0.4, 0.02)];
+        let words = breaks(&samples).unwrap();
+        let parts = [
+            "area falls from 0.30000 at 2.000 MPa to 0.25000 at 4.000 MPa",
+            "rises from 0.01000 mm at 4.000 MPa to 0.02000 mm at 8.000 MPa",
+        ];
+        for part in parts {
+            assert!(words.contains(part), "{words}");
+        }
+    }
+}
