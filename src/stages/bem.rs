@@ -215,6 +215,21 @@ pub fn missing(
     Work::new(parameters, rubber, store, watch).missing(&mut families)
 }
 
+/// The curve of one surface at one speed; what is not in the store is solved.
+///
+/// # Errors
+/// [`StageError::Contact`], [`StageError::Interrupted`], those of the store.
+pub(crate) fn curve(
+    parameters: &Bem,
+    rubber: &Rubber,
+    surface: &Surface,
+    speed_mm_s: f64,
+    store: &SolveStore,
+    watch: Watch,
+) -> Result<Vec<CurveRow>, StageError> {
+    Ok(Work::new(parameters, rubber, store, watch).one_curve(surface, speed_mm_s)?.values)
+}
+
 fn families<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Family<'a>> {
     let tolerance = parameters.average_tolerance;
     surfaces

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod models;
+mod multilevel;
 mod theories;
 
 use super::approximate::{ScaleRow, WAVES_FILE};
@@ -91,6 +92,8 @@ pub enum Model {
     Hybrid,
     /// All waves at finite deformation.
     Fem,
+    /// The half-space with the mean difference to all waves at finite deformation.
+    Multilevel,
     /// Persson's theory.
     Persson,
     /// The theory of Klüppel and Heinrich.
@@ -104,6 +107,7 @@ impl Model {
             Self::Bem => BEM,
             Self::Hybrid => HYBRID,
             Self::Fem => FEM,
+            Self::Multilevel => MULTILEVEL,
             Self::Persson => PERSSON,
             Self::KlueppelHeinrich => KLUEPPEL_HEINRICH,
         }
@@ -113,6 +117,7 @@ impl Model {
 const BEM: &str = "bem";
 const HYBRID: &str = "hybrid";
 const FEM: &str = "fem";
+const MULTILEVEL: &str = "multilevel";
 const PERSSON: &str = "persson";
 const KLUEPPEL_HEINRICH: &str = "klueppel-heinrich";
 
@@ -123,6 +128,8 @@ pub struct Models {
     pub hybrid: bool,
     /// The recipe has a section `[fem]`.
     pub fem: bool,
+    /// The recipe has a section `[multilevel]`.
+    pub multilevel: bool,
 }
 
 /// The averaged friction: `friction.arrow`.
@@ -132,7 +139,8 @@ pub const FRICTION_FILE: &str = "friction.arrow";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrictionRow {
     /// Contact model: `bem`, the viscoelastic half-space; `hybrid`, corrected by its steepest
-    /// waves; `fem`, all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
+    /// waves; `fem`, all waves at finite deformation; `multilevel`, the half-space with the mean difference
+    /// to all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
     pub model: String,
     /// Number of waves of the approximation.
     pub waves: u32,
@@ -142,17 +150,21 @@ pub struct FrictionRow {
     /// Contact area fraction.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
-    /// Friction coefficient of each realisation, in their order.
+    /// Friction coefficient of each realisation, in their order; of `multilevel` those that were solved at
+    /// finite deformation.
     #[schemars(extend("unit" = "1"))]
     pub realisations: Vec<f64>,
-    /// Mean over the realisations.
+    /// Realisations of the half-space that the mean of `multilevel` rests on; absent for other models.
+    pub half_space_realisations: Option<u32>,
+    /// Mean over the realisations; of `multilevel` the mean of the half-space plus the mean difference of
+    /// the realisations solved under both models.
     #[schemars(extend("unit" = "1"))]
     pub mean: f64,
     /// Standard deviation over the realisations; absent for fewer than two.
     #[schemars(extend("unit" = "1"))]
     pub standard_deviation: Option<f64>,
     /// Half width of the 95 % confidence interval of the mean, Student's t; absent for fewer than
-    /// two.
+    /// two. Of `multilevel` it holds the spread of the half-space and of the differences.
     #[schemars(extend("unit" = "1"))]
     pub confidence_95: Option<f64>,
     /// Estimated error of the mean by interpolation: the mean of those of the realisations.
@@ -165,8 +177,13 @@ pub struct FrictionRow {
     /// Bound of the change of the mean by waves that most realisations were solved without.
     #[schemars(extend("unit" = "1"))]
     pub left_out_error: f64,
+    /// Bound of the difference to all waves at finite deformation where `multilevel` solved none, 0 where it
+    /// did; absent for other models, whose difference is not bounded.
+    #[schemars(extend("unit" = "1"))]
+    pub model_error: Option<f64>,
     /// Sum of the statistical error, which is `confidence_95`, the interpolation error, the
-    /// discretisation error and that by waves left out; absent where one of them is not known.
+    /// discretisation error, that by waves left out and the model error of `multilevel`; absent where one of
+    /// them is not known.
     #[schemars(extend("unit" = "1"))]
     pub error_estimate: Option<f64>,
     /// Mean pressure averaged over the realisations.
@@ -181,7 +198,7 @@ pub struct FrictionRow {
 
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
 }
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
@@ -280,6 +297,9 @@ pub fn run(
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
         rows.extend(average(FEM, complete(values, &bem)));
     }
+    if models.multilevel {
+        rows.extend(multilevel::read(run)?);
+    }
     let (theories, constants) = (&parameters.theories, &parameters.theory_constants);
     let mut warnings = constants.warnings(theories);
     if !theories.is_empty() {
@@ -294,7 +314,7 @@ pub fn run(
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
-    if models.hybrid || models.fem || !theories.is_empty() {
+    if models.hybrid || models.fem || models.multilevel || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
     }
     if parameters.published.is_empty() {
@@ -452,12 +472,14 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
         speed_mm_s: first.speed_mm_s,
         contact_area_fraction: first.contact_area_fraction,
         realisations,
+        half_space_realisations: None,
         mean: estimate.mean,
         standard_deviation: present(estimate.standard_deviation),
         confidence_95: statistical_error,
         interpolation_error,
         discretisation_error,
         left_out_error,
+        model_error: None,
         error_estimate: solved
             .zip(statistical_error)
             .map(|(solved, statistical)| solved + statistical),

@@ -53,7 +53,7 @@ impl Report<'_> {
             return Ok(absent("No waves were fitted or given in this run."));
         };
         let limit = microscale_slope(self.run)?;
-        let finite = self.has(Stage::Fem)?;
+        let finite = self.has(Stage::Fem)? || self.has(Stage::Multilevel)?;
         Ok(html! {
             (self.doubt(&[Stage::Approximate, Stage::Micro]))
             p { (sentence(limit, finite)) }
