@@ -10,6 +10,7 @@ use super::bem::{CURVES_FILE, CurveRow};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
+use super::realise::same_surfaces;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::files;
@@ -27,7 +28,7 @@ use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -309,7 +310,7 @@ pub fn run(
         }
         context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
     }
-    let (_, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
+    let (fitted, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
@@ -322,15 +323,20 @@ pub fn run(
     }
     let mut compared = Vec::new();
     for published in &parameters.published {
-        compared.extend(compare(published, &rows)?);
+        compared.extend(compare(published, &rows, &fitted)?);
     }
     let metadata = Metadata::from([(NOTE_KEY.to_owned(), parameters.note.clone())]);
     context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
     Ok(warnings)
 }
 
-/// The computed rows that the published table has too.
-fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<ComparisonRow>, StageError> {
+/// The computed rows that the published table has too. Surfaces that two numbers of waves share are computed
+/// under one of them.
+fn compare(
+    published: &Published,
+    rows: &[FrictionRow],
+    fitted: &[ScaleRow],
+) -> Result<Vec<ComparisonRow>, StageError> {
     #[derive(Deserialize)]
     struct Line {
         area_fraction: f64,
@@ -338,18 +344,20 @@ fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<Comparison
     }
     let bad = |source| StageError::Published { path: published.file.clone(), source };
     let mut reader = csv::Reader::from_path(&published.file).map_err(bad)?;
+    let own_waves =
+        |waves: u32| waves == published.waves || same_surfaces(fitted, waves, published.waves);
     let mut compared = Vec::new();
     for line in reader.deserialize::<Line>() {
         let line = line.map_err(bad)?;
         let computed = rows.iter().find(|row| {
             row.model == published.model.name()
-                && row.waves == published.waves
+                && own_waves(row.waves)
                 && row.speed_mm_s == published.speed_mm_s
                 && row.contact_area_fraction == line.area_fraction
         });
         compared.extend(computed.map(|row| ComparisonRow {
             published_table: published.name.clone(),
-            waves: row.waves,
+            waves: published.waves,
             speed_mm_s: row.speed_mm_s,
             contact_area_fraction: row.contact_area_fraction,
             published: line.average,
