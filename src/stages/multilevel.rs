@@ -22,6 +22,7 @@ use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
 pub(crate) use bound::is_negligible;
 use ensemble::Ensemble;
+pub use estimate::Estimate;
 pub use rows::{
     AVERAGES_FILE, AverageRow, FURTHER_FILE, PAIRS_FILE, PairRow, SOLVES_FILE as FEM_SOLVES_FILE,
     schemas,

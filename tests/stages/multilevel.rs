@@ -3,6 +3,7 @@
 
 use super::{Campaign, digests, recipe, run, stale, try_run};
 use asperity::artifact::RunView;
+use asperity::forecast::forecast;
 use asperity::numerics::Interrupt;
 use asperity::numerics::statistics::MeanEstimate;
 use asperity::pipeline::{self, Event, Selection};
@@ -10,7 +11,9 @@ use asperity::recipe::Recipe;
 use asperity::stages::Stage;
 use asperity::stages::bem::{CURVES_FILE, CurveRow};
 use asperity::stages::fem::{FEM_FILE, FemCurveRow};
-use asperity::stages::multilevel::{AVERAGES_FILE, AverageRow, FURTHER_FILE, PAIRS_FILE, PairRow};
+use asperity::stages::multilevel::{
+    AVERAGES_FILE, AverageRow, Estimate, FURTHER_FILE, PAIRS_FILE, PairRow,
+};
 use asperity::stages::tables::{FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -214,4 +217,103 @@ fn a_section_that_asks_for_the_impossible_is_refused() {
         .unwrap_err()
         .to_string();
     assert!(error.starts_with("multilevel") && error.contains("poisson_ratio"), "{error}");
+}
+
+#[test]
+fn the_plan_foretells_the_first_pairs() {
+    let plan = |campaign: &Campaign| {
+        forecast(&recipe(campaign), 1, &Interrupt::default()).unwrap().multilevel.remove(0)
+    };
+    let all = plan(&campaign());
+    assert_eq!((all.pairs, all.most_pairs, all.columns), (4, 4, 32));
+    assert!(all.seconds_each > 0.0);
+    let first = plan(&with_tolerance("0.25"));
+    assert_eq!((first.pairs, first.most_pairs), (4, 30));
+    assert!(first.seconds_each > all.seconds_each, "on half the columns too");
+    let gentle = with_tolerance("0.2");
+    gentle.edit("recipe.toml", "amplitude_mm = 0.012", "amplitude_mm = 0.001");
+    gentle.edit("recipe.toml", "amplitude_mm = 0.016", "amplitude_mm = 0.002");
+    assert_eq!(plan(&gentle).pairs, 0);
+}
+
+/// Draws without repeats, the same on every machine: a permutation by a linear congruential generator
+/// (Knuth's MMIX constants).
+fn permutation(count: usize, seed: u64) -> Vec<usize> {
+    let mut state = seed;
+    let mut draw = |below: usize| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as usize) % below
+    };
+    let mut order: Vec<usize> = (0..count).collect();
+    for k in (1..count).rev() {
+        order.swap(k, draw(k + 1));
+    }
+    order
+}
+
+/// 100 families of 30 realisations of three waves, drawn from 120: the average from 30 on the half-space and
+/// five pairs against that of all 30 by finite elements, and against that of all 120.
+#[test]
+#[ignore = "240 curves of three waves at finite deformation: .ci/full"]
+fn families_of_three_waves_agree_with_averages_of_thirty_by_finite_elements() {
+    let campaign = Campaign::new();
+    let project = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let rubber = std::fs::read_to_string(project.join("data/rubber/table_2_1.toml")).unwrap();
+    campaign.write("rubber.toml", &rubber);
+    campaign.write(
+        "recipe.toml",
+        r#"title = "Three waves"
+        [[approximate.given]]
+        source = "thesis, Table 3.1, the three shortest waves"
+        scales = [
+            { wavelength_mm = 0.0625, amplitude_mm = 0.01867 },
+            { wavelength_mm = 0.125, amplitude_mm = 0.02648 },
+            { wavelength_mm = 0.25, amplitude_mm = 0.02939 },
+        ]
+        [realise]
+        waves = [3]
+        realisations = 120
+        seed = 1
+        [bem]
+        rubber = "rubber.toml"
+        speeds_mm_s = [10.0, 50.0]
+        area_fractions = [0.03, 0.05, 0.1]
+        [fem]
+        columns_per_shortest_wavelength = 48
+        "#,
+    );
+    let (_, view) = solved(&campaign, "out");
+    let (half_space, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let (full, _) = view.read_table::<FemCurveRow>("fem", FEM_FILE).unwrap();
+    for speed in [10.0, 50.0] {
+        for area in [0.03, 0.05, 0.1] {
+            let b: Vec<f64> = half_space
+                .iter()
+                .filter(|r| r.speed_mm_s == speed && r.contact_area_fraction == area)
+                .map(|row| row.friction_coefficient)
+                .collect();
+            let f: Vec<f64> = full
+                .iter()
+                .filter(|r| r.speed_mm_s == speed && r.contact_area_fraction == area)
+                .map(|row| row.friction_coefficient)
+                .collect();
+            assert_eq!((b.len(), f.len()), (120, 120), "every surface reaches every area");
+            let of_all = MeanEstimate::of(&f).mean;
+            let (mut of_thirty, mut of_pool) = (0, 0);
+            for family in 0..100 {
+                let order = &permutation(120, family)[..30];
+                let half_space: Vec<f64> = order.iter().map(|k| b[*k]).collect();
+                let thirty: Vec<f64> = order.iter().map(|k| f[*k]).collect();
+                let estimate = Estimate::new(&half_space, &thirty[..5]);
+                let inside =
+                    |mean: f64| u32::from((estimate.mean - mean).abs() <= estimate.confidence_95);
+                of_thirty += inside(MeanEstimate::of(&thirty).mean);
+                of_pool += inside(of_all);
+            }
+            eprintln!("{speed} mm/s, area {area}: {of_thirty} and {of_pool} of 100");
+            assert!(of_thirty >= 95, "{speed} mm/s, area {area}: {of_thirty} of 100");
+            assert!(of_pool >= 90, "{speed} mm/s, area {area}: {of_pool} of 100");
+        }
+    }
 }

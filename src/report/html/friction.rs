@@ -59,7 +59,7 @@ impl Report<'_> {
         let friction = self.friction_rows()?;
         let tolerance = self.tolerance()?;
         Ok(html! {
-            (self.warnings(&[Stage::Bem])?)
+            (self.warnings(&[Stage::Bem, Stage::Multilevel])?)
             p { @match tolerance {
                 Some(tolerance) => { "The recipe asks for a relative accuracy of the averages of " (percent(tolerance)) "." }
                 None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated all the same." }

@@ -20,7 +20,7 @@ impl Report<'_> {
             rows::<SelfAffineRow>(self.run, "characterise", SELF_AFFINE_FILE)?.unwrap_or_default();
         let average: Vec<_> = affine.iter().filter(|row| row.scan == AVERAGE).collect();
         Ok(html! {
-            (self.warnings(&[Stage::Characterise, Stage::Approximate])?)
+            (self.warnings(&[Stage::Characterise, Stage::Approximate, Stage::Realise])?)
             (self.figure("correlation")?)
             @if !fits.is_empty() { (fit_table(&fits)) }
             @if !average.is_empty() { (affine_table(&average)) }
