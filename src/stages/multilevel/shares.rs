@@ -277,6 +277,7 @@ pub(super) mod tests {
         }
         let share = inside as f64 / f64::from(families);
         let average = pairs_used as f64 / f64::from(families);
+        eprintln!("{share} with {average} pairs");
         assert!(share >= 0.93, "{share} with {average} pairs");
     }
 }
