@@ -312,13 +312,13 @@ mod tests {
         let table = &friction_tables(&[row(8, 0.05, &[0.5; 31])])[0];
         assert_eq!(table.header().len(), 5);
         assert!(markdown(std::slice::from_ref(table), &about("x")).contains("31 realisations"));
-        assert_eq!(data_frame(&table.rows).unwrap().width(), 4 + 31 + 8);
+        assert_eq!(data_frame(&table.rows).unwrap().width(), 4 + 31 + 10);
     }
 
     #[test]
     fn the_data_frame_leaves_absent_realisations_empty() {
         let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
-        assert_eq!(frame.shape(), (2, 14));
+        assert_eq!(frame.shape(), (2, 16));
         assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
     }
 
