@@ -144,7 +144,8 @@ fn a_tolerance_is_met_by_further_realisations_of_the_half_space_and_few_pairs() 
         let statistical = row.confidence_95.unwrap();
         assert!(statistical <= 0.25 * row.friction_coefficient, "{row:?}");
         assert!(row.pairs >= 4 && row.pairs <= row.half_space_realisations);
-        assert!(row.discretisation_error.is_some() && row.error_estimate.is_some());
+        // Half of so few columns do not reach every area.
+        assert_eq!(row.error_estimate.is_some(), row.discretisation_error.is_some());
     }
     // What is there stays as it is, and so does what another number of threads makes of it.
     assert_eq!(stale(&recipe, &campaign.path("out")), []);

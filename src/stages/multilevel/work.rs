@@ -49,17 +49,20 @@ impl<'a> Work<'a> {
 
     /// Solves the curves of all ensembles, as many as their averages need.
     pub fn solve_all(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
-        while ensembles.iter().any(|ensemble| !ensemble.is_complete()) {
+        loop {
             self.solve_open(ensembles)?;
+            // Without pairs nothing is open at first, and the half-space may still be too little.
             ensembles.par_iter_mut().for_each(Ensemble::extend);
+            if ensembles.iter().all(Ensemble::is_complete) {
+                return Ok(());
+            }
         }
-        Ok(())
     }
 
     /// The curves that are wanted next and that the store does not have. How many an accuracy needs follows
     /// from those it has. Pairs wait for the half-space, whose pressures they begin at.
     pub fn missing(&self, ensembles: &mut [Ensemble]) -> Result<Missing, StageError> {
-        while ensembles.iter().any(|ensemble| !ensemble.is_complete()) {
+        loop {
             let mut missing = Missing::default();
             for ensemble in &*ensembles {
                 for surface in ensemble.open_half_space() {
@@ -82,8 +85,10 @@ impl<'a> Work<'a> {
             }
             self.solve_open(ensembles)?;
             ensembles.par_iter_mut().for_each(Ensemble::extend);
+            if ensembles.iter().all(Ensemble::is_complete) {
+                return Ok(Missing::default());
+            }
         }
-        Ok(Missing::default())
     }
 
     /// Solves all curves that are wanted, side by side: the half-space first.
