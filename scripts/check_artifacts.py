@@ -115,6 +115,18 @@ def check_friction(path, friction, model, curves):
     demand(same, f"{path}: the realisations are not the friction that {model} has for each")
 
 
+def check_multilevel(path, friction, frames):
+    """The averages are the mean of the half-space plus the mean difference of the pairs."""
+    friction = friction.filter(pl.col("model") == "multilevel")
+    further, pairs = frames["multilevel/half_space.arrow"], frames["multilevel/pairs.arrow"]
+    half_space = pl.concat([frames["bem/curves.arrow"], further]).group_by(TABLE[1:])
+    half_space = half_space.agg(pl.col("friction_coefficient").mean().alias("half_space"))
+    differences = pairs.group_by(TABLE[1:]).agg(pl.col("difference").mean())
+    ours = friction.join(half_space, on=TABLE[1:]).join(differences, on=TABLE[1:], how="left")
+    off = (ours["mean"] - ours["half_space"] - ours["difference"].fill_null(0.0)).abs().max()
+    demand(off < ROUNDING, f"{path}: an average of multilevel differs by {off:.1e} from its parts")
+
+
 def check_run(run):
     manifests = sorted(run.glob("*/manifest.json"))
     demand(manifests, f"{run} has no results")
@@ -135,7 +147,9 @@ def check_run(run):
                 schema, version, shape = check_arrays(path)
             else:
                 schema, version, shape, frame = check_table(path)
-                frames[schema] = frame
+                # The stage multilevel has tables with the schemas of others; those of the others come first.
+                frames.setdefault(schema, frame)
+                frames[f"{manifest.parent.name}/{output['file']}"] = frame
             stated = output["schema"], output["schema_version"]
             demand((schema, version) == stated, f"{path} is {schema} {version}, not {stated}")
             print(f"{path}: {schema} version {version}, {shape}")
@@ -145,6 +159,9 @@ def check_run(run):
     check_solves(run / "bem/solves.arrow", solves)
     check_curves(run / "bem/curves.arrow", curves)
     for model in friction["model"].unique():
+        if model == "multilevel":
+            check_multilevel(run / "tables/friction.arrow", friction, frames)
+            continue
         of_model = frames.get(f"asperity.{model}.curves")
         if of_model is None:
             of_model = frames["asperity.tables.theories"].filter(pl.col("model") == model)

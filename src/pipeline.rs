@@ -12,7 +12,7 @@ use crate::recipe::{Recipe, Violation, Work};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
     Context, Stage, StageError, Watch, approximate, bem, characterise, fem, hybrid, ingest, micro,
-    realise, sinusoid, tables,
+    multilevel, realise, sinusoid, tables,
 };
 use plan::Plan;
 use serde_json::Value;
@@ -374,8 +374,20 @@ fn compute(
             }
             None => Ok(Vec::new()),
         },
+        Stage::Multilevel => match chain.multilevel {
+            Some(multilevel) => {
+                let store = solve_store(folder, forced)?;
+                let rubber = &plan.material.rubber;
+                multilevel::run(multilevel, chain.bem, rubber, folder, &store, context)
+            }
+            None => Ok(Vec::new()),
+        },
         Stage::Tables => {
-            let with = tables::Models { hybrid: chain.micro.is_some(), fem: chain.fem.is_some() };
+            let with = tables::Models {
+                hybrid: chain.micro.is_some(),
+                fem: chain.fem.is_some(),
+                multilevel: chain.multilevel.is_some(),
+            };
             tables::run(chain.tables, with, &plan.material.rubber, folder, context)
         }
         Stage::Sinusoid => unreachable!("no stage of the chain"),

@@ -18,6 +18,7 @@ use crate::stages::{
     hybrid::Hybrid,
     ingest::Ingest,
     micro::Micro,
+    multilevel::Multilevel,
     realise::{MOST_REALISATIONS, Realise},
     sinusoid::Sinusoid,
     tables::Tables,
@@ -66,6 +67,10 @@ pub struct Recipe {
     /// All waves at finite deformation, for small surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fem: Option<Fem>,
+    /// Averages at finite deformation from many realisations on the half-space and few with all waves
+    /// at finite deformation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub multilevel: Option<Multilevel>,
     /// Averaged friction tables.
     #[serde(default)]
     pub tables: Tables,
@@ -105,6 +110,8 @@ pub struct Chain<'a> {
     pub hybrid: Hybrid,
     /// Section `[fem]`, if all waves are to be solved at finite deformation.
     pub fem: Option<&'a Fem>,
+    /// Section `[multilevel]`, if averages at finite deformation are to be estimated.
+    pub multilevel: Option<&'a Multilevel>,
     /// Section `[tables]`.
     pub tables: &'a Tables,
 }
@@ -197,6 +204,9 @@ impl Recipe {
         if let Some(fem) = &mut self.fem {
             fem.estimate_mesh_error = true;
         }
+        if let Some(multilevel) = &mut self.multilevel {
+            multilevel.estimate_mesh_error = true;
+        }
         self.tables.tolerance = Some(tolerance);
         self.tolerance = Some(tolerance);
         Ok(())
@@ -258,6 +268,7 @@ impl Recipe {
             ("micro", self.micro.is_some()),
             ("hybrid", self.hybrid.is_some()),
             ("fem", self.fem.is_some()),
+            ("multilevel", self.multilevel.is_some()),
             ("tables", self.tables != Tables::default()),
             ("sweep", self.sweep.is_some()),
         ];
@@ -281,6 +292,7 @@ impl Recipe {
             micro: self.micro.as_ref(),
             hybrid: self.hybrid.unwrap_or_default(),
             fem: self.fem.as_ref(),
+            multilevel: self.multilevel.as_ref(),
             tables: &self.tables,
         })
     }
@@ -307,6 +319,7 @@ impl Chain<'_> {
         self.bem.check()?;
         self.micro.map_or(Ok(()), Micro::check)?;
         self.fem.map_or(Ok(()), Fem::check)?;
+        self.multilevel.map_or(Ok(()), Multilevel::check)?;
         self.tables.check()?;
         let limit = self.realise.most_realisations.unwrap_or(0);
         demand(

@@ -4,7 +4,8 @@
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
 use crate::stages::{
-    approximate, bem, characterise, fem, hybrid, ingest, micro, realise, sinusoid, tables,
+    approximate, bem, characterise, fem, hybrid, ingest, micro, multilevel, realise, sinusoid,
+    tables,
 };
 use crate::sweep::SweepFrictionRow;
 use schemars::schema_for;
@@ -48,6 +49,8 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<hybrid::LocalRow>()?,
         table::<fem::FemCurveRow>()?,
         table::<fem::FemSolveRow>()?,
+        table::<multilevel::AverageRow>()?,
+        table::<multilevel::PairRow>()?,
         table::<tables::FrictionRow>()?,
         table::<tables::ComparisonRow>()?,
         table::<tables::ModelRow>()?,

@@ -282,7 +282,7 @@ fn csv_text(frame: &polars::prelude::DataFrame) -> Result<String, CliError> {
 /// The table with the columns of the published ones and the interval.
 fn published(table: &FrictionTable) -> Result<polars::prelude::DataFrame, CliError> {
     let frame = data_frame(&table.rows).map_err(CliError::failure)?;
-    let other = [
+    let mut other = vec![
         "model",
         "waves",
         "speed_mm_s",
@@ -290,6 +290,9 @@ fn published(table: &FrictionTable) -> Result<polars::prelude::DataFrame, CliErr
         "discretisation_error",
         "pressure_mpa",
     ];
+    if table.rows.iter().all(|row| row.half_space_realisations.is_none()) {
+        other.extend(["half_space_realisations", "model_error"]);
+    }
     let keep = frame.get_column_names().into_iter().filter(|name| !other.contains(&name.as_str()));
     let keep: Vec<String> = keep.map(ToString::to_string).collect();
     frame.select(keep).map_err(CliError::failure)

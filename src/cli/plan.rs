@@ -98,6 +98,23 @@ fn text(forecast: &Forecast) -> String {
             micro.seconds
         );
     }
+    for pairs in &forecast.multilevel {
+        let count = match (pairs.pairs, pairs.most_pairs) {
+            (0, _) => "no finite elements, the surface is gentle enough for the half-space".into(),
+            (least, most) if least == most => format!("{least} pairs"),
+            (least, most) => {
+                format!("{least} pairs, up to {most} if their differences vary too much")
+            }
+        };
+        let (waves, speed) = (pairs.waves, pairs.speed_mm_s);
+        let _ = write!(text, "multilevel of {waves} waves, {speed} mm/s: {count}");
+        let _ = if pairs.pairs > 0 {
+            let (columns, seconds) = (pairs.columns, pairs.seconds_each);
+            writeln!(text, ", {columns} columns, about {seconds:.0} s each")
+        } else {
+            writeln!(text)
+        };
+    }
     let seconds = |seconds: Option<f64>| {
         seconds.map_or_else(|| "not known".into(), |seconds| format!("{seconds:.2} s"))
     };

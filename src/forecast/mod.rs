@@ -7,9 +7,11 @@
 //! scaled ([`micro`]).
 
 pub mod micro;
+mod multilevel;
 mod scales;
 
 pub use micro::MicroForecast;
+pub use multilevel::MultilevelForecast;
 pub use scales::{ScaleForecast, ScaleModel};
 
 use crate::artifact::{ArtifactError, RunView, SolveStore};
@@ -105,6 +107,8 @@ pub struct Forecast {
     pub curves: Vec<CurveForecast>,
     /// Microscales at finite deformation.
     pub micro: Vec<MicroForecast>,
+    /// Realisations solved under both models.
+    pub multilevel: Vec<MultilevelForecast>,
     /// All stages in their order.
     pub stages: Vec<StageForecast>,
     /// Expected largest memory in MB.
@@ -148,12 +152,18 @@ pub fn forecast(
     if chain.fem.is_some() {
         stages.push(StageForecast { stage: Stage::Fem, seconds: None });
     }
+    let mut pairs = Vec::new();
+    if let Some(parameters) = chain.multilevel {
+        pairs = multilevel::pairs(parameters, &chain, &trial, &curves);
+        let seconds = multilevel::seconds(&pairs, threads);
+        stages.push(StageForecast { stage: Stage::Multilevel, seconds: Some(seconds) });
+    }
     stages.push(StageForecast { stage: Stage::Tables, seconds: Some(0.0) });
     let most = curves.iter().map(|curve| curve.grid_points[1]).max().unwrap_or(0);
     // Each thread keeps the contacts of a curve on all of its grids: twice the finest one.
     let points = 2.0 * most as f64 * threads as f64;
     let megabytes = BASE_MEGABYTES + BYTES_PER_POINT * points / 1e6;
-    Ok(Forecast { curves, micro: microscales, stages, megabytes })
+    Ok(Forecast { curves, micro: microscales, multilevel: pairs, stages, megabytes })
 }
 
 /// Computes all stages up to the half-space in a folder; returns the seconds of those before it, and
@@ -202,7 +212,7 @@ fn demand_attainable(
 /// The recipe without what is dear.
 fn shortened(recipe: &Recipe) -> Recipe {
     let mut trial = recipe.clone();
-    (trial.micro, trial.hybrid, trial.fem) = (None, None, None);
+    (trial.micro, trial.hybrid, trial.fem, trial.multilevel) = (None, None, None, None);
     (trial.tables.published, trial.tables.theories) = (Vec::new(), Vec::new());
     let averaged = trial.bem.as_ref().is_some_and(|bem| bem.average_tolerance.is_some());
     if let Some(realise) = &mut trial.realise {

@@ -6,8 +6,8 @@ use crate::recipe::{Chain, Recipe, Work};
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber, RubberData};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro, realise,
-    sinusoid, tables,
+    Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro, multilevel,
+    realise, sinusoid, tables,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -37,8 +37,11 @@ impl<'a> Plan<'a> {
                 }
                 published = tables::inputs(chain.tables).map_err(of(Stage::Tables))?;
                 let material = bem::rubber(chain.bem).map_err(of(Stage::Bem))?;
-                let finite =
-                    [(chain.micro.is_some(), Stage::Micro), (chain.fem.is_some(), Stage::Fem)];
+                let finite = [
+                    (chain.micro.is_some(), Stage::Micro),
+                    (chain.fem.is_some(), Stage::Fem),
+                    (chain.multilevel.is_some(), Stage::Multilevel),
+                ];
                 if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
                     check_finite_strain(&material.rubber, &chain.bem.rubber).map_err(of(stage))?;
                 }
@@ -102,6 +105,7 @@ impl<'a> Plan<'a> {
             Stage::Realise => vec![(Stage::Approximate, approximate::WAVES_FILE)],
             Stage::Bem => vec![surfaces],
             Stage::Micro | Stage::Fem => vec![surfaces, curves],
+            Stage::Multilevel => vec![surfaces, curves, (Stage::Bem, bem::SOLVES_FILE)],
             Stage::Hybrid => {
                 let microscale = [micro::SAMPLES_FILE, micro::LAW_FILE];
                 let microscale = microscale.map(|file| (Stage::Micro, file));
@@ -110,9 +114,13 @@ impl<'a> Plan<'a> {
             Stage::Tables => {
                 let hybrid = chain.micro.map(|_| (Stage::Hybrid, hybrid::HYBRID_FILE));
                 let fem = chain.fem.map(|_| (Stage::Fem, fem::FEM_FILE));
+                let averages = (Stage::Multilevel, multilevel::AVERAGES_FILE);
+                let pairs = (Stage::Multilevel, multilevel::PAIRS_FILE);
+                let multilevel = chain.multilevel.map(|_| [averages, pairs]);
                 let theories = (!chain.tables.theories.is_empty()).then_some(surfaces);
                 let waves = (Stage::Approximate, approximate::WAVES_FILE);
-                [curves, waves].into_iter().chain(hybrid).chain(fem).chain(theories).collect()
+                let finite = hybrid.into_iter().chain(fem).chain(multilevel.into_iter().flatten());
+                [curves, waves].into_iter().chain(finite).chain(theories).collect()
             }
         }
     }
@@ -177,6 +185,13 @@ impl<'a> Plan<'a> {
                 });
                 (fem::REVISION, fem::schemas(), parameters)
             }
+            Stage::Multilevel => {
+                let parameters = json!({
+                    "multilevel": chain.multilevel,
+                    "bem": chain.bem.resolved(&self.material),
+                });
+                (multilevel::REVISION, multilevel::schemas(), parameters)
+            }
             Stage::Tables => {
                 let mut parameters = json!(chain.tables);
                 if !chain.tables.theories.is_empty() {
@@ -198,6 +213,7 @@ pub(super) fn stages(work: Work) -> Vec<Stage> {
         Stage::Ingest | Stage::Characterise => chain.ingest.is_some(),
         Stage::Micro | Stage::Hybrid => chain.micro.is_some(),
         Stage::Fem => chain.fem.is_some(),
+        Stage::Multilevel => chain.multilevel.is_some(),
         _ => true,
     };
     Stage::CHAIN.into_iter().filter(has).collect()

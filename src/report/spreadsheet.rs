@@ -35,7 +35,8 @@ fn fill(sheet: &mut Worksheet, table: &FrictionTable, about: &About) -> Result<(
     let realisations = table.rows.first().map_or(0, |row| row.realisations.len());
     let names = ["contact area fraction", "average", "standard deviation", "95 % of the mean"]
         .into_iter()
-        .chain(["interpolation error", "grid error", "left-out error", "sum of errors"])
+        .chain(["interpolation error", "grid error", "left-out error", "model error"])
+        .chain(["sum of errors"])
         .chain(["mean pressure / MPa"])
         .map(str::to_owned)
         .chain((1..=realisations).map(|k| format!("realisation {k}")));
@@ -51,6 +52,7 @@ fn fill(sheet: &mut Worksheet, table: &FrictionTable, about: &About) -> Result<(
             Some(row.interpolation_error),
             row.discretisation_error,
             Some(row.left_out_error),
+            row.model_error,
             row.error_estimate,
             Some(row.pressure_mpa),
         ];

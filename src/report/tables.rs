@@ -69,12 +69,12 @@ impl FrictionTable {
         let tolerance = about.tolerance.map(|tolerance| format!(", tolerance {tolerance}"));
         let temperature = about.temperature_c.map(|celsius| format!(" at {celsius} °C"));
         format!(
-            "Friction coefficient over contact area fraction, model {}, {} waves, {} mm/s, {} \
-             realisations{}, rubber {}{}, asperity {}",
+            "Friction coefficient over contact area fraction, model {}, {} waves, {} mm/s, \
+             {}{}, rubber {}{}, asperity {}",
             self.model,
             self.waves,
             self.speed_mm_s,
-            self.realisations(),
+            self.basis(),
             tolerance.unwrap_or_default(),
             about.rubber,
             temperature.unwrap_or_default(),
@@ -85,6 +85,18 @@ impl FrictionTable {
     /// Name for a file of the table, without extension.
     pub fn file_stem(&self) -> String {
         format!("friction_{}_{}_waves_{}_mm_s", self.model, self.waves, self.speed_mm_s)
+    }
+
+    /// What the averages rest on.
+    fn basis(&self) -> String {
+        let realisations = self.realisations();
+        match self.rows.first().and_then(|row| row.half_space_realisations) {
+            Some(half_space) => format!(
+                "{half_space} realisations of the half-space, {realisations} of them with all waves at finite \
+                 deformation"
+            ),
+            None => format!("{realisations} realisations"),
+        }
     }
 
     fn realisations(&self) -> usize {
@@ -146,12 +158,15 @@ pub fn data_frame(rows: &[FrictionRow]) -> Result<DataFrame, PolarsError> {
             rows.iter().map(|row| row.realisations.get(k).copied()).collect();
         columns.push(Column::new(format!("realisation_{}", k + 1).into(), values));
     }
+    let half_space: Vec<Option<u32>> = rows.iter().map(|row| row.half_space_realisations).collect();
+    columns.push(Column::new("half_space_realisations".into(), half_space));
     columns.push(column("average", |row| row.mean));
     columns.push(optional("standard_deviation", |row| row.standard_deviation));
     columns.push(optional("confidence_95", |row| row.confidence_95));
     columns.push(column("interpolation_error", |row| row.interpolation_error));
     columns.push(optional("discretisation_error", |row| row.discretisation_error));
     columns.push(column("left_out_error", |row| row.left_out_error));
+    columns.push(optional("model_error", |row| row.model_error));
     columns.push(optional("error_estimate", |row| row.error_estimate));
     columns.push(column("pressure_mpa", |row| row.pressure_mpa));
     DataFrame::new(rows.len(), columns)
@@ -245,11 +260,13 @@ mod tests {
             speed_mm_s: 10.0,
             contact_area_fraction: area,
             realisations: realisations.to_vec(),
+            half_space_realisations: None,
             mean: 0.5,
             standard_deviation: (realisations.len() > 1).then_some(0.1),
             confidence_95: None,
             interpolation_error: 0.0,
             left_out_error: 0.0,
+            model_error: None,
             discretisation_error: None,
             error_estimate: Some(0.25),
             pressure_mpa: 1.0,
@@ -295,13 +312,13 @@ mod tests {
         let table = &friction_tables(&[row(8, 0.05, &[0.5; 31])])[0];
         assert_eq!(table.header().len(), 5);
         assert!(markdown(std::slice::from_ref(table), &about("x")).contains("31 realisations"));
-        assert_eq!(data_frame(&table.rows).unwrap().width(), 4 + 31 + 8);
+        assert_eq!(data_frame(&table.rows).unwrap().width(), 4 + 31 + 10);
     }
 
     #[test]
     fn the_data_frame_leaves_absent_realisations_empty() {
         let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
-        assert_eq!(frame.shape(), (2, 14));
+        assert_eq!(frame.shape(), (2, 16));
         assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
     }
 

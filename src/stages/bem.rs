@@ -234,6 +234,21 @@ fn demand_for_all(
     Ok(())
 }
 
+/// The curve of one surface at one speed; what is not in the store is solved.
+///
+/// # Errors
+/// [`StageError::Contact`], [`StageError::Interrupted`], those of the store.
+pub(crate) fn curve(
+    parameters: &Bem,
+    rubber: &Rubber,
+    surface: &Surface,
+    speed_mm_s: f64,
+    store: &SolveStore,
+    watch: Watch,
+) -> Result<Vec<CurveRow>, StageError> {
+    Ok(Work::new(parameters, rubber, store, watch).one_curve(surface, speed_mm_s)?.values)
+}
+
 fn families<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Family<'a>> {
     let tolerance = parameters.average_tolerance;
     surfaces

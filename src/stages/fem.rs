@@ -6,11 +6,11 @@ mod task;
 
 use super::bem::{Bem, CURVES_FILE as BEM_CURVES, CurveRow};
 use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError, schema_of};
+use super::{Context, StageError, Watch, schema_of};
 use crate::artifact::{ArtifactError, Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
-use curve::CurveResult;
+pub(crate) use curve::CurveResult as FemCurve;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -157,7 +157,7 @@ pub fn run(
     let tasks = task::tasks(bem, &surfaces, &half_space);
     let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
     (context.watch.progress)(0, total);
-    let results: Vec<CurveResult> = tasks
+    let results: Vec<FemCurve> = tasks
         .par_iter()
         .map(|task| {
             context.check_interrupt()?;
@@ -193,4 +193,24 @@ pub fn missing(
         }
     }
     Ok(missing)
+}
+
+/// Solves what a packed store does not have of a curve, and returns the curve.
+///
+/// # Errors
+/// As [`Task::solve`].
+pub(crate) fn curve(
+    task: &Task,
+    parameters: &Fem,
+    area_fractions: &[f64],
+    rubber: &Rubber,
+    store: &SolveStore,
+    watch: Watch,
+) -> Result<FemCurve, StageError> {
+    task.curve(parameters, area_fractions, rubber, store, watch)
+}
+
+/// Columns of the mesh of a surface.
+pub(crate) fn columns(parameters: &Fem, surface: &Surface) -> usize {
+    task::columns_of(parameters, surface)
 }

@@ -10,6 +10,7 @@
 //! | [`micro`] | waves, friction over area, rubber | the steepest waves under both models, their local law |
 //! | [`hybrid`] | waves, friction over area, microscale | friction over area, corrected |
 //! | [`fem`] | waves, rubber | friction over area with all waves at finite deformation |
+//! | [`multilevel`] | waves, friction over area, rubber | averages of both models in one |
 //! | [`tables`] | friction over area | averages with confidence intervals |
 
 pub mod approximate;
@@ -19,6 +20,7 @@ pub mod fem;
 pub mod hybrid;
 pub mod ingest;
 pub mod micro;
+pub mod multilevel;
 pub mod realise;
 pub mod sinusoid;
 pub mod tables;
@@ -51,6 +53,8 @@ pub enum Stage {
     Hybrid,
     /// All waves at finite deformation.
     Fem,
+    /// Averages at finite deformation from many realisations on the half-space and few with all waves.
+    Multilevel,
     /// Averaged friction tables.
     Tables,
     /// Three models on one sine; no part of the chain.
@@ -59,7 +63,7 @@ pub enum Stage {
 
 impl Stage {
     /// The stages from scans to tables in the order of the data.
-    pub const CHAIN: [Self; 9] = [
+    pub const CHAIN: [Self; 10] = [
         Self::Ingest,
         Self::Characterise,
         Self::Approximate,
@@ -68,6 +72,7 @@ impl Stage {
         Self::Micro,
         Self::Hybrid,
         Self::Fem,
+        Self::Multilevel,
         Self::Tables,
     ];
 
@@ -82,6 +87,7 @@ impl Stage {
             Self::Micro => "micro",
             Self::Hybrid => "hybrid",
             Self::Fem => "fem",
+            Self::Multilevel => "multilevel",
             Self::Tables => "tables",
             Self::Sinusoid => "sinusoid",
         }

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[realise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -94,6 +94,9 @@ pub fn schemas() -> Vec<SchemaVersion> {
 
 /// Draws the phases and writes the surfaces; returns warnings.
 ///
+/// Approximations whose surfaces are the same ([`same_surfaces`]) are realised once, under the number of waves that
+/// the recipe names first.
+///
 /// # Errors
 /// [`StageError::NoWaves`] for an approximation without a wave of positive amplitude.
 pub fn run(
@@ -103,16 +106,17 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let (fitted, _) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
     let seed = parameters.seed.unwrap_or_default();
-    let mut rows = Vec::new();
+    let (mut rows, mut realised, mut warnings) = (Vec::new(), Vec::<u32>::new(), Vec::new());
     for &waves in &parameters.waves {
-        let scales: Vec<SineScale> = fitted
-            .iter()
-            .filter(|row| row.waves == waves)
-            .map(|row| SineScale {
-                wavelength: row.wavelength_mm / 1e3,
-                amplitude: row.amplitude_mm / 1e3,
-            })
-            .collect();
+        if let Some(other) = realised.iter().find(|other| same_surfaces(&fitted, **other, waves)) {
+            warnings.push(format!(
+                "{waves} waves: the surfaces are those of {other} waves, because the other waves have no \
+                 amplitude; they are solved and shown once, as {other} waves"
+            ));
+            continue;
+        }
+        realised.push(waves);
+        let scales = scales_of(&fitted, waves);
         if scales.iter().all(|scale| scale.amplitude == 0.0) {
             return Err(StageError::NoWaves { waves });
         }
@@ -129,7 +133,34 @@ pub fn run(
         }
     }
     context.pending.write_table(SURFACES_FILE, &rows, &Metadata::new())?;
-    Ok(Vec::new())
+    Ok(warnings)
+}
+
+fn scales_of(fitted: &[ScaleRow], waves: u32) -> Vec<SineScale> {
+    let own = fitted.iter().filter(|row| row.waves == waves);
+    own.map(|row| SineScale {
+        wavelength: row.wavelength_mm / 1e3,
+        amplitude: row.amplitude_mm / 1e3,
+    })
+    .collect()
+}
+
+/// Two fits that end in the same waves differ by round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Whether the surfaces of two numbers of waves are the same: the waves of the one are the first ones of the
+/// other, to round-off, and the others of it have no amplitude. Phases are drawn from the shortest wave on, so
+/// that the same waves have the same phases.
+pub(crate) fn same_surfaces(fitted: &[ScaleRow], left: u32, right: u32) -> bool {
+    let (left, right) = (scales_of(fitted, left), scales_of(fitted, right));
+    let close = |a: f64, b: f64| (a - b).abs() <= ROUND_OFF * a.abs().max(b.abs());
+    let same = left
+        .iter()
+        .zip(&right)
+        .all(|(a, b)| close(a.wavelength, b.wavelength) && close(a.amplitude, b.amplitude));
+    let shared = left.len().min(right.len());
+    let rest = left[shared..].iter().chain(&right[shared..]);
+    shared > 0 && same && rest.into_iter().all(|scale| scale.amplitude == 0.0)
 }
 
 /// A realised surface.
@@ -189,6 +220,31 @@ pub fn read_surfaces(run: &RunView) -> Result<Vec<Surface>, StageError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_wave_without_amplitude_at_the_end_makes_no_other_surface() {
+        let row = |waves: u32, scale: u32, amplitude_mm: f64| ScaleRow {
+            waves,
+            scale,
+            wavelength_mm: f64::from(1 << scale),
+            amplitude_mm,
+            amplitude_confidence_95_mm: None,
+            rms_slope: 0.0,
+        };
+        let fitted = [
+            row(2, 1, 0.1),
+            row(2, 2, 0.2),
+            row(3, 1, 0.1 * (1.0 + 1e-14)),
+            row(3, 2, 0.2),
+            row(3, 3, 0.0),
+            row(4, 1, 0.1),
+            row(4, 2, 0.0),
+            row(4, 3, 0.2),
+        ];
+        assert!(same_surfaces(&fitted, 2, 3) && same_surfaces(&fitted, 3, 2));
+        assert!(!same_surfaces(&fitted, 2, 4) && !same_surfaces(&fitted, 3, 4));
+        assert!(!same_surfaces(&fitted, 2, 5), "no such fit");
+    }
 
     #[test]
     fn the_period_is_that_of_the_waves_that_are_there() {

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod models;
+mod multilevel;
 mod theories;
 
 use super::approximate::{ScaleRow, WAVES_FILE};
@@ -9,6 +10,7 @@ use super::bem::{CURVES_FILE, CurveRow};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
+use super::realise::same_surfaces;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
 use crate::files;
@@ -26,7 +28,7 @@ use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -91,6 +93,8 @@ pub enum Model {
     Hybrid,
     /// All waves at finite deformation.
     Fem,
+    /// The half-space with the mean difference to all waves at finite deformation.
+    Multilevel,
     /// Persson's theory.
     Persson,
     /// The theory of Klüppel and Heinrich.
@@ -104,6 +108,7 @@ impl Model {
             Self::Bem => BEM,
             Self::Hybrid => HYBRID,
             Self::Fem => FEM,
+            Self::Multilevel => MULTILEVEL,
             Self::Persson => PERSSON,
             Self::KlueppelHeinrich => KLUEPPEL_HEINRICH,
         }
@@ -113,6 +118,7 @@ impl Model {
 const BEM: &str = "bem";
 const HYBRID: &str = "hybrid";
 const FEM: &str = "fem";
+const MULTILEVEL: &str = "multilevel";
 const PERSSON: &str = "persson";
 const KLUEPPEL_HEINRICH: &str = "klueppel-heinrich";
 
@@ -123,6 +129,8 @@ pub struct Models {
     pub hybrid: bool,
     /// The recipe has a section `[fem]`.
     pub fem: bool,
+    /// The recipe has a section `[multilevel]`.
+    pub multilevel: bool,
 }
 
 /// The averaged friction: `friction.arrow`.
@@ -132,7 +140,8 @@ pub const FRICTION_FILE: &str = "friction.arrow";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrictionRow {
     /// Contact model: `bem`, the viscoelastic half-space; `hybrid`, corrected by its steepest
-    /// waves; `fem`, all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
+    /// waves; `fem`, all waves at finite deformation; `multilevel`, the half-space with the mean difference
+    /// to all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
     pub model: String,
     /// Number of waves of the approximation.
     pub waves: u32,
@@ -142,17 +151,21 @@ pub struct FrictionRow {
     /// Contact area fraction.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
-    /// Friction coefficient of each realisation, in their order.
+    /// Friction coefficient of each realisation, in their order; of `multilevel` those that were solved at
+    /// finite deformation.
     #[schemars(extend("unit" = "1"))]
     pub realisations: Vec<f64>,
-    /// Mean over the realisations.
+    /// Realisations of the half-space that the mean of `multilevel` rests on; absent for other models.
+    pub half_space_realisations: Option<u32>,
+    /// Mean over the realisations; of `multilevel` the mean of the half-space plus the mean difference of
+    /// the realisations solved under both models.
     #[schemars(extend("unit" = "1"))]
     pub mean: f64,
     /// Standard deviation over the realisations; absent for fewer than two.
     #[schemars(extend("unit" = "1"))]
     pub standard_deviation: Option<f64>,
     /// Half width of the 95 % confidence interval of the mean, Student's t; absent for fewer than
-    /// two.
+    /// two. Of `multilevel` it holds the spread of the half-space and of the differences.
     #[schemars(extend("unit" = "1"))]
     pub confidence_95: Option<f64>,
     /// Estimated error of the mean by interpolation: the mean of those of the realisations.
@@ -165,8 +178,13 @@ pub struct FrictionRow {
     /// Bound of the change of the mean by waves that most realisations were solved without.
     #[schemars(extend("unit" = "1"))]
     pub left_out_error: f64,
+    /// Bound of the difference to all waves at finite deformation where `multilevel` solved none, 0 where it
+    /// did; absent for other models, whose difference is not bounded.
+    #[schemars(extend("unit" = "1"))]
+    pub model_error: Option<f64>,
     /// Sum of the statistical error, which is `confidence_95`, the interpolation error, the
-    /// discretisation error and that by waves left out; absent where one of them is not known.
+    /// discretisation error, that by waves left out and the model error of `multilevel`; absent where one of
+    /// them is not known.
     #[schemars(extend("unit" = "1"))]
     pub error_estimate: Option<f64>,
     /// Mean pressure averaged over the realisations.
@@ -181,7 +199,7 @@ pub struct FrictionRow {
 
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
 }
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
@@ -280,6 +298,9 @@ pub fn run(
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
         rows.extend(average(FEM, complete(values, &bem)));
     }
+    if models.multilevel {
+        rows.extend(multilevel::read(run)?);
+    }
     let (theories, constants) = (&parameters.theories, &parameters.theory_constants);
     let mut warnings = constants.warnings(theories);
     if !theories.is_empty() {
@@ -289,12 +310,12 @@ pub fn run(
         }
         context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
     }
-    let (_, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
+    let (fitted, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
-    if models.hybrid || models.fem || !theories.is_empty() {
+    if models.hybrid || models.fem || models.multilevel || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
     }
     if parameters.published.is_empty() {
@@ -302,15 +323,20 @@ pub fn run(
     }
     let mut compared = Vec::new();
     for published in &parameters.published {
-        compared.extend(compare(published, &rows)?);
+        compared.extend(compare(published, &rows, &fitted)?);
     }
     let metadata = Metadata::from([(NOTE_KEY.to_owned(), parameters.note.clone())]);
     context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
     Ok(warnings)
 }
 
-/// The computed rows that the published table has too.
-fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<ComparisonRow>, StageError> {
+/// The computed rows that the published table has too. Surfaces that two numbers of waves share are computed
+/// under one of them.
+fn compare(
+    published: &Published,
+    rows: &[FrictionRow],
+    fitted: &[ScaleRow],
+) -> Result<Vec<ComparisonRow>, StageError> {
     #[derive(Deserialize)]
     struct Line {
         area_fraction: f64,
@@ -318,18 +344,20 @@ fn compare(published: &Published, rows: &[FrictionRow]) -> Result<Vec<Comparison
     }
     let bad = |source| StageError::Published { path: published.file.clone(), source };
     let mut reader = csv::Reader::from_path(&published.file).map_err(bad)?;
+    let own_waves =
+        |waves: u32| waves == published.waves || same_surfaces(fitted, waves, published.waves);
     let mut compared = Vec::new();
     for line in reader.deserialize::<Line>() {
         let line = line.map_err(bad)?;
         let computed = rows.iter().find(|row| {
             row.model == published.model.name()
-                && row.waves == published.waves
+                && own_waves(row.waves)
                 && row.speed_mm_s == published.speed_mm_s
                 && row.contact_area_fraction == line.area_fraction
         });
         compared.extend(computed.map(|row| ComparisonRow {
             published_table: published.name.clone(),
-            waves: row.waves,
+            waves: published.waves,
             speed_mm_s: row.speed_mm_s,
             contact_area_fraction: row.contact_area_fraction,
             published: line.average,
@@ -452,12 +480,14 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
         speed_mm_s: first.speed_mm_s,
         contact_area_fraction: first.contact_area_fraction,
         realisations,
+        half_space_realisations: None,
         mean: estimate.mean,
         standard_deviation: present(estimate.standard_deviation),
         confidence_95: statistical_error,
         interpolation_error,
         discretisation_error,
         left_out_error,
+        model_error: None,
         error_estimate: solved
             .zip(statistical_error)
             .map(|(solved, statistical)| solved + statistical),

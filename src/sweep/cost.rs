@@ -11,6 +11,8 @@ use crate::artifact::SolveStore;
 use crate::forecast::micro as finite_elements;
 use crate::recipe::Case;
 use crate::stages::bem::{self, SolveRow};
+use crate::stages::fem::{self, Fem};
+use crate::stages::multilevel::solves_of_curve;
 use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -133,16 +135,16 @@ impl<'a> Costs<'a> {
                     if self.solvers.micro.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
                 finite(columns, twice * finite_elements::seconds_pressed_to(most, columns))
             }
-            Task::Fem(task) => {
-                let columns = task.columns(&self.solvers.fem);
-                let areas = &self.solvers.bem.area_fractions;
-                let range = areas[areas.len() - 1] / areas[0];
-                let solves = range.ln() / self.solvers.fem.pressure_ratio.ln() + 2.0;
-                let twice =
-                    if self.solvers.fem.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
-                finite(columns, twice * finite_elements::seconds_of_solves(solves, columns))
-            }
+            Task::Fem(task) => self.all_waves(task, &self.solvers.fem),
+            Task::Multilevel(task) => self.all_waves(task, &self.solvers.multilevel.fem()),
         }
+    }
+
+    fn all_waves(&self, task: &fem::Task, parameters: &Fem) -> Cost {
+        let columns = task.columns(parameters);
+        let solves = solves_of_curve(&self.solvers.bem.area_fractions, parameters.pressure_ratio);
+        let twice = if parameters.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
+        finite(columns, twice * finite_elements::seconds_of_solves(solves, columns))
     }
 }
 

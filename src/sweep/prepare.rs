@@ -10,7 +10,7 @@ use crate::rubber::{Rubber, RubberData};
 use crate::stages::bem::{self, CURVES_FILE, CurveRow};
 use crate::stages::ingest::{ScanFile, find_scans};
 use crate::stages::realise::{Surface, read_surfaces};
-use crate::stages::{Stage, StageError, Watch, fem, micro};
+use crate::stages::{Stage, StageError, Watch, fem, micro, multilevel};
 use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -159,12 +159,14 @@ impl Prepared {
         let wanted = |task: Task| Wanted::new(number, task, solvers, rubber);
         let curves = bem::missing(&solvers.bem, rubber, surfaces, store, silent)?;
         let (micro, fem) = (case.recipe.micro.is_some(), case.recipe.fem.is_some());
-        if !curves.is_empty() || !(micro || fem) {
+        let multilevel = case.recipe.multilevel.is_some();
+        if !curves.is_empty() || !(micro || fem || multilevel) {
             return Ok(curves.into_iter().map(Task::Bem).map(wanted).collect());
         }
         let folder = self.make_case(case)?;
         self.run_stage(case, folder.clone(), Stage::Bem, watch)?;
-        let (curves, _) = RunView::of(folder).read_table::<CurveRow>("bem", CURVES_FILE)?;
+        let view = RunView::of(folder);
+        let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE)?;
         let mut tasks = Vec::new();
         if micro {
             let missing = micro::missing(&solvers.micro, rubber, surfaces, &curves, store)?;
@@ -174,6 +176,12 @@ impl Prepared {
             let missing =
                 fem::missing(&solvers.fem, &solvers.bem, rubber, surfaces, &curves, store)?;
             tasks.extend(missing.into_iter().map(Task::Fem).map(wanted));
+        }
+        if multilevel {
+            let (parameters, bem) = (&solvers.multilevel, &solvers.bem);
+            let missing = multilevel::missing(parameters, bem, rubber, &view, store, silent)?;
+            tasks.extend(missing.half_space.into_iter().map(Task::Bem).map(wanted));
+            tasks.extend(missing.full.into_iter().map(Task::Multilevel).map(wanted));
         }
         Ok(tasks)
     }

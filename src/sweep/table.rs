@@ -28,7 +28,7 @@ pub struct SweepFrictionRow {
 
 impl Row for SweepFrictionRow {
     const SCHEMA: &'static str = "asperity.sweep.friction";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 impl SweepFrictionRow {
@@ -68,12 +68,14 @@ mod tests {
             speed_mm_s: 10.0,
             contact_area_fraction: 0.05,
             realisations: vec![0.1 + 0.2, 0.7],
+            half_space_realisations: None,
             mean: 0.5,
             standard_deviation: Some(0.2),
             confidence_95: None,
             interpolation_error: 1e-4,
             discretisation_error: None,
             left_out_error: 0.0,
+            model_error: None,
             error_estimate: None,
             pressure_mpa: 1.5,
             shortest_reliable_wavelength_mm: Some(0.1),

@@ -6,6 +6,7 @@ use crate::rubber::Rubber;
 use crate::stages::bem::{self, Bem};
 use crate::stages::fem::{self, Fem};
 use crate::stages::micro::{self, Micro};
+use crate::stages::multilevel::Multilevel;
 use crate::stages::{StageError, Watch};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,8 @@ pub enum Task {
     Micro(micro::Task),
     /// Of the stage `fem`.
     Fem(fem::Task),
+    /// A curve at finite deformation of the stage `multilevel`.
+    Multilevel(fem::Task),
 }
 
 /// The sections of a recipe that say how tasks are solved, the same in all cases.
@@ -30,6 +33,8 @@ pub struct Solvers {
     pub micro: Micro,
     /// Section `[fem]`.
     pub fem: Fem,
+    /// Section `[multilevel]`.
+    pub multilevel: Multilevel,
 }
 
 impl Solvers {
@@ -39,10 +44,11 @@ impl Solvers {
     /// [`Violation`] for the study of one sine.
     pub fn of(case: &Recipe) -> Result<Self, Violation> {
         match case.work()? {
-            Work::Chain(Chain { bem, micro, fem, .. }) => Ok(Self {
+            Work::Chain(Chain { bem, micro, fem, multilevel, .. }) => Ok(Self {
                 bem: bem.clone(),
                 micro: micro.cloned().unwrap_or_default(),
                 fem: fem.copied().unwrap_or_default(),
+                multilevel: multilevel.copied().unwrap_or_default(),
             }),
             Work::Sinusoid(_) => Err(Violation::SweepOfSinusoid),
         }
@@ -56,6 +62,7 @@ impl Task {
             Self::Bem(task) => task.problem(rubber),
             Self::Micro(task) => task.problem(&solvers.micro, rubber),
             Self::Fem(task) => task.problem(&solvers.fem, rubber),
+            Self::Multilevel(task) => task.problem(&solvers.multilevel.fem(), rubber),
         }
     }
 
@@ -65,6 +72,9 @@ impl Task {
             Self::Bem(task) => task.key(&solvers.bem, rubber),
             Self::Micro(task) => task.key(&solvers.micro, rubber),
             Self::Fem(task) => task.key(&solvers.fem, &solvers.bem.area_fractions, rubber),
+            Self::Multilevel(task) => {
+                task.key(&solvers.multilevel.fem(), &solvers.bem.area_fractions, rubber)
+            }
         }
     }
 
@@ -85,6 +95,10 @@ impl Task {
             Self::Fem(task) => {
                 task.solve(&solvers.fem, &solvers.bem.area_fractions, rubber, store, watch)
             }
+            Self::Multilevel(task) => {
+                let (fem, areas) = (solvers.multilevel.fem(), &solvers.bem.area_fractions);
+                task.solve(&fem, areas, rubber, store, watch)
+            }
         }
     }
 
@@ -97,6 +111,7 @@ impl Task {
         match self {
             Self::Bem(task) => surface("bem", &task.surface, task.speed_mm_s),
             Self::Fem(task) => surface("fem", &task.surface, task.speed_mm_s),
+            Self::Multilevel(task) => surface("multilevel", &task.surface, task.speed_mm_s),
             Self::Micro(task) => format!("micro, {}, {} mm/s", task.owner_names(), task.speed_mm_s),
         }
     }

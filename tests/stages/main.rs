@@ -15,6 +15,7 @@ mod hybrid;
 mod instrument_files;
 mod interruption;
 mod metrology;
+mod multilevel;
 mod reliability;
 mod scans;
 mod schemas;

@@ -1,13 +1,14 @@
 //! approximate and realise on a correlation that is known in closed form.
 
 use super::Campaign;
-use asperity::artifact::{Identity, Manifest, Metadata, Pending, RunFolder};
+use asperity::artifact::{Identity, Manifest, Metadata, Pending, RunFolder, RunView};
 use asperity::numerics::Interrupt;
 use asperity::stages::approximate::{self, Approximate, FITS_FILE, FitRow, ScaleRow, WAVES_FILE};
 use asperity::stages::characterise::{
     AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY,
 };
 use asperity::stages::realise::{self, Realise, Surface, read_surfaces};
+use asperity::stages::tables::{COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow};
 use asperity::stages::{Context, StageError, Watch};
 use asperity::surface::SineScale;
 use asperity::surface::ladder::Undetermined;
@@ -173,4 +174,48 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     }
     assert_eq!(realised(7), surfaces);
     assert_ne!(realised(8), surfaces);
+}
+
+#[test]
+fn approximations_with_the_same_surfaces_are_solved_once_and_compared_under_both_names() {
+    let campaign = Campaign::new();
+    campaign.write("published.csv", "area_fraction,average\n0.1,0.5\n");
+    campaign.write(
+        "recipe.toml",
+        r#"title = "A wave without amplitude"
+        [[approximate.given]]
+        source = "a test"
+        scales = [{ wavelength_mm = 1.0, amplitude_mm = 0.02 }]
+        [[approximate.given]]
+        source = "a test"
+        scales = [
+            { wavelength_mm = 1.0, amplitude_mm = 0.02 },
+            { wavelength_mm = 2.0, amplitude_mm = 0.0 },
+        ]
+        [realise]
+        waves = [1, 2]
+        realisations = 2
+        seed = 1
+        [bem]
+        rubber = "rubber.toml"
+        speeds_mm_s = [10.0]
+        area_fractions = [0.1]
+        [[tables.published]]
+        name = "Two waves"
+        waves = 2
+        speed_mm_s = 10.0
+        file = "published.csv"
+        "#,
+    );
+    let out = campaign.path("out");
+    super::run(&super::recipe(&campaign), &out);
+    let view = RunView::of(out);
+    let surfaces = read_surfaces(&view).unwrap();
+    assert!(surfaces.len() == 2 && surfaces.iter().all(|surface| surface.waves == 1));
+    let warnings = view.stage_manifest("realise").unwrap().unwrap().warnings;
+    assert!(warnings[0].starts_with("2 waves: the surfaces are those of 1 waves"), "{warnings:?}");
+    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    assert_eq!(friction.len(), 1);
+    let (compared, _) = view.read_table::<ComparisonRow>("tables", COMPARISON_FILE).unwrap();
+    assert_eq!((compared.len(), compared[0].waves, compared[0].computed), (1, 2, friction[0].mean));
 }

@@ -91,3 +91,21 @@ fn a_tolerance_asks_for_realisations_in_rounds() {
     quietly(&campaign, &format!("sweep collect {last}")).result();
     assert_eq!(tables(&campaign, "out"), expected, "{rounds} rounds");
 }
+
+#[test]
+fn pairs_of_multilevel_come_after_the_half_space() {
+    let campaign = campaign();
+    let (chain, _) = STEEP.split_once("[micro]").unwrap();
+    let multilevel = "[multilevel]\ncolumns_per_shortest_wavelength = 16\npressure_ratio = 1.6\n\
+                      first_realisations = 3\n";
+    let chain = chain.replace("realisations = 2", "realisations = 4");
+    campaign.write("recipe.toml", &format!("{chain}{multilevel}"));
+    let expected = alone(&campaign);
+    let first = solved(&campaign, "out", 1);
+    assert_eq!(stages(&first), ["bem"]);
+    let second = solved(&campaign, "out", 1);
+    assert_eq!(stages(&second), ["multilevel"]);
+    assert_eq!(stages(&plan(&campaign, "out", 1)), Vec::<String>::new());
+    quietly(&campaign, &format!("sweep collect {second}")).result();
+    assert_eq!(tables(&campaign, "out"), expected);
+}

@@ -30,7 +30,7 @@ Examples:
 pub(in crate::cli) struct Collect {
     #[command(flatten)]
     plan: PlanPath,
-    /// If the solves ask for further tasks (micro, fem, realisations for a tolerance), plan and submit these
+    /// If the solves ask for further tasks (micro, fem, multilevel, realisations for a tolerance), plan and submit these
     /// as a further array in place of solving them here.
     #[arg(long)]
     submit_next: bool,

@@ -18,7 +18,7 @@ Examples:
 ///
 /// Runs the stages up to the realisations, tries two curves of each approximation to predict costs, and writes
 /// a plan into the folder of the sweep; standard output is its path. The same recipe, folder and number of shards
-/// give the same plan. Where the half-space is solved, the tasks of micro and fem are listed.
+/// give the same plan. Where the half-space is solved, the tasks of micro, fem and multilevel are listed.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Plan {

@@ -32,6 +32,7 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
     let bem = rows::<SolveRow>(run, "bem", SOLVES_FILE)?.unwrap_or_default();
     let micro = rows::<SampleRow>(run, "micro", SAMPLES_FILE)?.unwrap_or_default();
     let fem = rows::<FemSolveRow>(run, "fem", FEM_SOLVES_FILE)?.unwrap_or_default();
+    let multilevel = rows::<FemSolveRow>(run, "multilevel", FEM_SOLVES_FILE)?.unwrap_or_default();
     let relative = |error: f64, friction: f64, seconds: f64| {
         let error = (error / friction).abs();
         (error.is_finite() && error > LEAST_ERROR && seconds > 0.0).then_some((error, seconds))
@@ -43,14 +44,17 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
         let friction = row.friction_finite_deformation;
         relative(friction - row.friction_from_heat, friction, row.seconds)
     });
-    let of_fem = fem.iter().filter_map(|row| {
+    let of_all_waves = |row: &FemSolveRow| {
         let friction = row.friction_coefficient;
         relative(friction - row.friction_from_heat, friction, row.seconds)
-    });
-    let kinds: [(&str, usize, Points); 3] = [
+    };
+    let of_fem = fem.iter().filter_map(of_all_waves);
+    let of_multilevel = multilevel.iter().filter_map(of_all_waves);
+    let kinds: [(&str, usize, Points); 4] = [
         ("half-space, error by the grid", 1, of_bem.collect()),
         ("microscale, force against heat", 2, of_micro.collect()),
         ("fem, force against heat", 3, of_fem.collect()),
+        ("multilevel, force against heat", 5, of_multilevel.collect()),
     ];
     let series: Vec<Series> = kinds
         .into_iter()

@@ -45,9 +45,12 @@ fn model(rows: &[&FrictionRow]) -> Vec<Series> {
     if !band.is_empty() {
         series.push(Series::unnamed(colour, Mark::Band(band)));
     }
-    let label = match count {
-        0 | 1 => format!("{}, 1 surface", rows[0].model),
-        count => format!("{}, mean of {count}, 95 %", rows[0].model),
+    let label = match (rows[0].half_space_realisations, count) {
+        (Some(half_space), pairs) => {
+            format!("{}, {half_space} of the half-space and {pairs} pairs, 95 %", rows[0].model)
+        }
+        (None, 0 | 1) => format!("{}, 1 surface", rows[0].model),
+        (None, count) => format!("{}, mean of {count}, 95 %", rows[0].model),
     };
     let mark = if dashed { Mark::Dashed(average) } else { Mark::Line(average) };
     series.push(Series::new(label, colour, mark));
@@ -66,6 +69,7 @@ pub(super) fn look(model: &str) -> (usize, bool) {
         "bem" => (1, false),
         "hybrid" => (2, true),
         "fem" => (3, false),
+        "multilevel" => (5, false),
         "persson" => (4, true),
         _ => (6, true),
     }

@@ -122,7 +122,7 @@ pub static ALL: [Kind; 13] = [
         name: "accuracy",
         shows: "seconds against estimated error of every contact, and the parts of the error",
         wants: "the stage bem",
-        stages: &[Stage::Bem, Stage::Micro, Stage::Fem, Stage::Tables],
+        stages: &[Stage::Bem, Stage::Micro, Stage::Fem, Stage::Multilevel, Stage::Tables],
         make: accuracy::accuracy,
     },
 ];

@@ -59,7 +59,7 @@ impl Report<'_> {
         let friction = self.friction_rows()?;
         let tolerance = self.tolerance()?;
         Ok(html! {
-            (self.warnings(&[Stage::Bem])?)
+            (self.warnings(&[Stage::Bem, Stage::Multilevel])?)
             p { @match tolerance {
                 Some(tolerance) => { "The recipe asks for a relative accuracy of the averages of " (percent(tolerance)) "." }
                 None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated all the same." }
@@ -108,6 +108,10 @@ fn models_in_words(rows: &[FrictionRow]) -> String {
         "bem" => "bem, the viscoelastic half-space".to_owned(),
         "hybrid" => "hybrid, the half-space corrected by its steepest waves".into(),
         "fem" => "fem, all waves at finite deformation".into(),
+        "multilevel" => {
+            "multilevel, the half-space with the mean difference to all waves at finite deformation"
+                .into()
+        }
         other => format!("{other}, a theory"),
     });
     words.collect::<Vec<_>>().join("; ")
@@ -204,6 +208,7 @@ fn error_table(rows: &[FrictionRow]) -> Markup {
             "interpolation",
             "grid",
             "waves left out",
+            "model",
             "sum",
             "sum, relative",
         ],
@@ -219,6 +224,7 @@ fn error_table(rows: &[FrictionRow]) -> Markup {
                 number(row.interpolation_error, 2),
                 optional(row.discretisation_error, 2),
                 number(row.left_out_error, 2),
+                optional(row.model_error, 2),
                 optional(row.error_estimate, 2),
                 row.error_estimate.map_or_else(|| "–".into(), |error| percent(error / row.mean)),
             ]

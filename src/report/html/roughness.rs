@@ -20,7 +20,7 @@ impl Report<'_> {
             rows::<SelfAffineRow>(self.run, "characterise", SELF_AFFINE_FILE)?.unwrap_or_default();
         let average: Vec<_> = affine.iter().filter(|row| row.scan == AVERAGE).collect();
         Ok(html! {
-            (self.warnings(&[Stage::Characterise, Stage::Approximate])?)
+            (self.warnings(&[Stage::Characterise, Stage::Approximate, Stage::Realise])?)
             (self.figure("correlation")?)
             @if !fits.is_empty() { (fit_table(&fits)) }
             @if !average.is_empty() { (affine_table(&average)) }
@@ -53,7 +53,7 @@ impl Report<'_> {
             return Ok(absent("No waves were fitted or given in this run."));
         };
         let limit = microscale_slope(self.run)?;
-        let finite = self.has(Stage::Fem)?;
+        let finite = self.has(Stage::Fem)? || self.has(Stage::Multilevel)?;
         Ok(html! {
             (self.doubt(&[Stage::Approximate, Stage::Micro]))
             p { (sentence(limit, finite)) }

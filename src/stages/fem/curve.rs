@@ -17,7 +17,7 @@ use std::time::Instant;
 const SOLVER_REVISION: u32 = 3;
 
 /// The curve of one surface at one speed.
-pub(super) struct CurveResult {
+pub(crate) struct CurveResult {
     pub rows: Vec<FemCurveRow>,
     pub solves: Vec<FemSolveRow>,
     pub warnings: Vec<String>,

@@ -1,0 +1,67 @@
+//! How many realisations the stage multilevel will solve with finite elements, and what they cost.
+
+use super::micro::seconds_of_solves;
+use super::{CurveForecast, Trial};
+use crate::recipe::Chain;
+use crate::stages::fem;
+use crate::stages::multilevel::{Multilevel, is_negligible, solves_of_curve};
+use serde::Serialize;
+
+/// Half the columns too, for the error by the mesh, cost two fifths more.
+const WITH_MESH_ERROR: f64 = 1.4;
+
+/// The realisations of one approximation at one speed that are solved under both models.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MultilevelForecast {
+    /// Number of waves of the approximation.
+    pub waves: u32,
+    /// Sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// Their number: the first ones, or none where the surface is too gentle for a difference that matters.
+    pub pairs: u32,
+    /// The number that it may grow to if the differences of the first ones vary too much for the tolerance.
+    pub most_pairs: u32,
+    /// Elements over the period.
+    pub columns: usize,
+    /// Expected seconds of one of them, on one thread.
+    pub seconds_each: f64,
+}
+
+/// Those of all approximations and speeds.
+pub(super) fn pairs(
+    parameters: &Multilevel,
+    chain: &Chain,
+    trial: &Trial,
+    curves: &[CurveForecast],
+) -> Vec<MultilevelForecast> {
+    let fem = parameters.fem();
+    let meshes = if fem.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
+    let solves = solves_of_curve(&chain.bem.area_fractions, fem.pressure_ratio);
+    let tolerance = chain.bem.average_tolerance;
+    let of_curve = |curve: &CurveForecast| {
+        let surface = trial.first_surfaces().find(|surface| surface.waves == curve.waves)?;
+        let columns = fem::columns(&fem, surface);
+        let negligible = tolerance.is_some_and(|tolerance| is_negligible(surface, tolerance));
+        let limited = |count: u32| if negligible { 0 } else { count.min(chain.realise.drawn()) };
+        let pairs = limited(parameters.first_realisations);
+        let most_pairs =
+            if tolerance.is_some() { limited(parameters.most_realisations) } else { pairs };
+        Some(MultilevelForecast {
+            waves: curve.waves,
+            speed_mm_s: curve.speed_mm_s,
+            pairs,
+            most_pairs,
+            columns,
+            seconds_each: meshes * seconds_of_solves(solves, columns),
+        })
+    };
+    curves.iter().filter_map(of_curve).collect()
+}
+
+/// Wall time of the first pairs, which run side by side.
+pub(super) fn seconds(forecasts: &[MultilevelForecast], threads: usize) -> f64 {
+    let total: f64 = forecasts.iter().map(|f| f64::from(f.pairs) * f.seconds_each).sum();
+    let present = forecasts.iter().filter(|forecast| forecast.pairs > 0);
+    let longest = present.map(|forecast| forecast.seconds_each).fold(0.0, f64::max);
+    longest.max(total / threads as f64)
+}

@@ -1,0 +1,143 @@
+//! The curves of all ensembles: those that are missing, solved side by side.
+
+use super::Multilevel;
+use super::ensemble::Ensemble;
+use crate::artifact::SolveStore;
+use crate::rubber::Rubber;
+use crate::stages::bem::{self, Bem, CurveRow};
+use crate::stages::fem::{self, Fem, FemCurve};
+use crate::stages::{StageError, Watch};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What is to be solved next.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Missing {
+    /// Further curves of the half-space.
+    pub half_space: Vec<bem::Task>,
+    /// Curves at finite deformation.
+    pub full: Vec<fem::Task>,
+}
+
+impl Missing {
+    /// Whether nothing is.
+    pub fn is_empty(&self) -> bool {
+        self.half_space.is_empty() && self.full.is_empty()
+    }
+}
+
+/// What the curves are made of.
+pub(super) struct Work<'a> {
+    fem: Fem,
+    bem: &'a Bem,
+    rubber: &'a Rubber,
+    store: &'a SolveStore,
+    watch: Watch<'a>,
+    done: AtomicU64,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(
+        parameters: &Multilevel,
+        bem: &'a Bem,
+        rubber: &'a Rubber,
+        store: &'a SolveStore,
+        watch: Watch<'a>,
+    ) -> Self {
+        Self { fem: parameters.fem(), bem, rubber, store, watch, done: AtomicU64::new(0) }
+    }
+
+    /// Solves the curves of all ensembles, as many as their averages need.
+    pub fn solve_all(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
+        loop {
+            self.solve_open(ensembles)?;
+            // Without pairs nothing is open at first, and the half-space may still be too little.
+            ensembles.par_iter_mut().for_each(Ensemble::extend);
+            if ensembles.iter().all(Ensemble::is_complete) {
+                return Ok(());
+            }
+        }
+    }
+
+    /// The curves that are wanted next and that the store does not have. How many an accuracy needs follows
+    /// from those it has. Pairs wait for the half-space, whose pressures they begin at.
+    pub fn missing(&self, ensembles: &mut [Ensemble]) -> Result<Missing, StageError> {
+        loop {
+            let mut missing = Missing::default();
+            for ensemble in &*ensembles {
+                for surface in ensemble.open_half_space() {
+                    let (surface, speed_mm_s) = (surface.clone(), ensemble.speed_mm_s);
+                    let task = bem::Task { surface, speed_mm_s };
+                    if !task.is_finished(self.bem, self.rubber, self.store)? {
+                        missing.half_space.push(task);
+                    }
+                }
+                let pairs = ensemble.open_pairs().iter();
+                for task in pairs.filter_map(|surface| ensemble.fem_task(surface)) {
+                    let areas = &self.bem.area_fractions;
+                    if !task.is_finished(&self.fem, areas, self.rubber, self.store)? {
+                        missing.full.push(task);
+                    }
+                }
+            }
+            if !missing.is_empty() {
+                return Ok(missing);
+            }
+            self.solve_open(ensembles)?;
+            ensembles.par_iter_mut().for_each(Ensemble::extend);
+            if ensembles.iter().all(Ensemble::is_complete) {
+                return Ok(Missing::default());
+            }
+        }
+    }
+
+    /// Solves all curves that are wanted, side by side: the half-space first.
+    fn solve_open(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
+        let wanted = |e: &Ensemble| e.open_half_space().len() + e.open_pairs().len();
+        let open: usize = ensembles.iter().map(wanted).sum();
+        let total = self.done.load(Ordering::Relaxed) + open as u64;
+        (self.watch.progress)(self.done.load(Ordering::Relaxed), total);
+        let half_space: Vec<_> = ensembles
+            .iter()
+            .flat_map(|e| e.open_half_space().iter().map(|surface| (surface, e.speed_mm_s)))
+            .collect();
+        let curves: Vec<Vec<CurveRow>> = half_space
+            .par_iter()
+            .map(|(surface, speed_mm_s)| {
+                let Self { bem, rubber, store, watch, .. } = *self;
+                let curve = bem::curve(bem, rubber, surface, *speed_mm_s, store, watch);
+                self.counted(total, curve)
+            })
+            .collect::<Result<_, StageError>>()?;
+        let mut curves = curves.into_iter();
+        for ensemble in &mut *ensembles {
+            let count = ensemble.open_half_space().len();
+            ensemble.half_space.extend(curves.by_ref().take(count));
+        }
+        let pairs: Vec<Vec<fem::Task>> = ensembles
+            .iter()
+            .map(|e| e.open_pairs().iter().filter_map(|surface| e.fem_task(surface)).collect())
+            .collect();
+        let curves: Vec<FemCurve> = pairs
+            .par_iter()
+            .flatten()
+            .map(|task| {
+                let Self { fem, bem, rubber, store, watch, .. } = self;
+                let areas = &bem.area_fractions;
+                self.counted(total, fem::curve(task, fem, areas, rubber, store, *watch))
+            })
+            .collect::<Result<_, StageError>>()?;
+        let mut curves = curves.into_iter();
+        for (ensemble, pairs) in ensembles.iter_mut().zip(pairs) {
+            ensemble.full.extend(curves.by_ref().take(pairs.len()));
+        }
+        Ok(())
+    }
+
+    fn counted<T>(&self, total: u64, curve: Result<T, StageError>) -> Result<T, StageError> {
+        let curve = curve?;
+        (self.watch.progress)(1 + self.done.fetch_add(1, Ordering::Relaxed), total);
+        self.watch.check_interrupt()?;
+        Ok(curve)
+    }
+}
