@@ -1,14 +1,20 @@
 //! The sweeps that are fitted together, with what is known of their shifts beforehand.
 
-use super::model::Series;
+use super::model::{FreeVerticals, Series};
 use super::result::LeftOut;
-use super::shift::first_shifts;
+use super::shift::{self, first_shifts};
+use super::verticals::{Start, WALK_PER_ROOT_K};
 use super::{FitError, FitOptions, GivenShift, SAME_TEMPERATURE_K, Sweep, VerticalChoice};
 use crate::rubber::VerticalShift;
 use std::f64::consts::LN_10;
 
 /// A `log10 a_T` that is that of the reference, but for rounding in a table.
 const NO_SHIFT_DECADES: f64 = 1e-6;
+/// Standard deviation by which moduli differ from clamping to clamping of a specimen, relative.
+const CLAMPING: f64 = 0.01;
+/// Powers of the absolute temperature from which free vertical factors start, beside density times
+/// temperature. 0 is no factor at all; moduli of filled rubbers fall with temperature.
+const STARTING_EXPONENTS: [f64; 4] = [-3.0, -1.0, 0.0, 3.0];
 
 /// Sweeps by ascending temperature that hang together.
 #[derive(Debug)]
@@ -20,8 +26,6 @@ pub(super) struct Chain {
     pub reference_c: Option<f64>,
     /// ln a of every sweep, where the fit starts or, if `given`, what it takes.
     pub ln_shifts: Vec<f64>,
-    /// ln b of every sweep, where the fit starts if they are free.
-    ln_verticals: Vec<f64>,
     /// Whether the shifts are not to be fitted.
     pub given: bool,
     /// Given factors about the reference, of a master curve that has no temperature itself.
@@ -36,7 +40,8 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// ln b of a sweep that follows from the choice; 0 if it is fitted.
+    /// ln b of a sweep that follows from the choice; where factors are fitted it is what they are
+    /// compared with.
     pub fn ln_known_vertical(&self, sweep: usize) -> f64 {
         let temperature_c = self.sweeps[sweep].temperature_c;
         let known = temperature_c.zip(self.reference_c).zip(known_vertical(self.vertical));
@@ -51,15 +56,75 @@ impl Chain {
             ln_equilibrium: 0.0,
             terms: Vec::new(),
             ln_shifts: self.ln_shifts.clone(),
-            ln_verticals: self.ln_verticals.clone(),
+            ln_verticals: vec![0.0; self.sweeps.len()],
         }
     }
+
+    /// The vertical factors, relative to the known ones, that the fit has to find: all, or those of
+    /// the sweeps whose shift hardly shows.
+    pub fn free_verticals(&self) -> Option<FreeVerticals> {
+        let all = matches!(self.vertical, VerticalChoice::Free { .. });
+        let free: Vec<bool> = (0..self.sweeps.len())
+            .map(|k| k != self.reference && (all || self.uncertain[k]))
+            .collect();
+        let step = |pair: &[Sweep]| match all {
+            true => WALK_PER_ROOT_K * (celsius(&pair[1]) - celsius(&pair[0])).sqrt(),
+            false => CLAMPING,
+        };
+        let steps = self.sweeps.windows(2).map(step).collect();
+        free.contains(&true).then_some(FreeVerticals { free, steps, noise: 0.0 })
+    }
+
+    /// Where a fit of vertical factors starts: from the known ones, from powers of the absolute
+    /// temperature, and from what tan δ, which no factor changes, says of the shifts.
+    pub fn starts(&self) -> Vec<Start> {
+        let sweeps = self.sweeps.len();
+        let mut starts =
+            vec![Start { ln_shifts: self.ln_shifts.clone(), ln_verticals: vec![0.0; sweeps] }];
+        let Some(reference_c) = self.reference_c.filter(|_| !self.given) else { return starts };
+        let known: Vec<f64> = (0..sweeps).map(|k| self.ln_known_vertical(k)).collect();
+        let scaled = |ln: &[f64]| -> Vec<Sweep> {
+            self.sweeps.iter().zip(ln).map(|(sweep, ln)| divided(sweep, ln.exp())).collect()
+        };
+        for exponent in STARTING_EXPONENTS {
+            let power = VerticalShift::Power { exponent };
+            let ln = |sweep: &Sweep| power.ln_factor(celsius(sweep), reference_c);
+            let ln: Vec<f64> = self.sweeps.iter().map(ln).collect();
+            starts.push(Start {
+                ln_shifts: shift::by_storage_from(&scaled(&ln), &self.ln_shifts),
+                ln_verticals: ln.iter().zip(&known).map(|(ln, known)| ln - known).collect(),
+            });
+        }
+        starts.push(shift::by_loss_factor_from(&scaled(&known), &self.ln_shifts));
+        for start in &mut starts {
+            for values in [&mut start.ln_shifts, &mut start.ln_verticals] {
+                let at_reference = values[self.reference];
+                values.iter_mut().for_each(|value| *value -= at_reference);
+            }
+        }
+        starts
+    }
+}
+
+fn celsius(sweep: &Sweep) -> f64 {
+    sweep.temperature_c.unwrap_or(f64::NAN)
+}
+
+fn divided(sweep: &Sweep, factor: f64) -> Sweep {
+    let mut sweep = sweep.clone();
+    for point in &mut sweep.points {
+        point.storage_modulus /= factor;
+        point.loss_modulus /= factor;
+    }
+    sweep
 }
 
 fn known_vertical(vertical: VerticalChoice) -> Option<VerticalShift> {
     match vertical {
-        VerticalChoice::RhoT { expansion_per_k } => Some(VerticalShift::RhoT { expansion_per_k }),
-        VerticalChoice::None | VerticalChoice::Free => None,
+        VerticalChoice::RhoT { expansion_per_k } | VerticalChoice::Free { expansion_per_k } => {
+            Some(VerticalShift::RhoT { expansion_per_k })
+        }
+        VerticalChoice::None => None,
     }
 }
 
@@ -69,8 +134,7 @@ fn known_vertical(vertical: VerticalChoice) -> Option<VerticalShift> {
 /// [`FitError::Reference`]; [`FitError::NoOverlap`] if nothing is joined to the reference.
 pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, FitError> {
     let wanted = options.reference_c.map(|wanted| nearest(&sweeps, wanted)).transpose()?;
-    let free = options.vertical == VerticalChoice::Free;
-    let first = first_shifts(&reduced(&sweeps, options.vertical), free);
+    let first = first_shifts(&reduced(&sweeps, options.vertical));
     let groups = || first.groups.iter().cloned();
     let group = match wanted {
         Some(wanted) => groups().find(|group| group.contains(&wanted)),
@@ -83,10 +147,9 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
         return Err(no_overlap(&sweeps[colder], &sweeps[colder + 1]));
     }
     let reference = wanted.unwrap_or(group.start + (group.len() - 1) / 2);
-    let relative = |values: &[f64]| -> Vec<f64> {
-        values[group.clone()].iter().map(|value| value - values[reference]).collect()
-    };
-    let temperature = |k: usize| sweeps[k].temperature_c.unwrap_or(f64::NAN);
+    let relative = first.ln_shifts[group.clone()].iter();
+    let ln_shifts = relative.map(|ln| ln - first.ln_shifts[reference]).collect();
+    let temperature = |k: usize| celsius(&sweeps[k]);
     let between = |k: usize| if k < reference { k..reference } else { reference..k };
     let uncertain = |k: usize| first.uncertain.iter().any(|pair| between(k).contains(pair));
     let by_loss = first.by_loss.iter().filter(|k| group.contains(k));
@@ -94,8 +157,7 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
     Ok(Chain {
         reference: reference - group.start,
         reference_c: sweeps[reference].temperature_c,
-        ln_shifts: relative(&first.ln_shifts),
-        ln_verticals: relative(&first.ln_verticals),
+        ln_shifts,
         given: false,
         curve_factors: Vec::new(),
         vertical: options.vertical,
@@ -130,7 +192,6 @@ pub(super) fn given(
         reference: 0,
         reference_c: None,
         ln_shifts: vec![0.0; sweeps.len()],
-        ln_verticals: vec![0.0; sweeps.len()],
         given: true,
         curve_factors: Vec::new(),
         vertical: options.vertical,
@@ -194,15 +255,9 @@ fn nearest(sweeps: &[Sweep], wanted_c: f64) -> Result<usize, FitError> {
 /// them, before there is a reference.
 fn reduced(sweeps: &[Sweep], vertical: VerticalChoice) -> Vec<Sweep> {
     let Some(shift) = known_vertical(vertical) else { return sweeps.to_vec() };
-    let mut sweeps = sweeps.to_vec();
-    for sweep in &mut sweeps {
-        let factor = shift.ln_factor(sweep.temperature_c.unwrap_or_default(), 0.0).exp();
-        for point in &mut sweep.points {
-            point.storage_modulus /= factor;
-            point.loss_modulus /= factor;
-        }
-    }
-    sweeps
+    let factor =
+        |sweep: &Sweep| shift.ln_factor(sweep.temperature_c.unwrap_or_default(), 0.0).exp();
+    sweeps.iter().map(|sweep| divided(sweep, factor(sweep))).collect()
 }
 
 fn no_overlap(colder: &Sweep, hotter: &Sweep) -> FitError {

@@ -10,8 +10,9 @@ use nalgebra::{DMatrix, DVector};
 /// determine it.
 const LARGEST_C2_K: f64 = 1e5;
 
-/// Both laws through the factors that are certain, the better one first; without Arrhenius where none has a positive energy, without
-/// WLF for fewer than three factors or where they do not determine it.
+/// Both laws through the factors that are certain, the better one first; without Arrhenius where
+/// none has a positive energy, without WLF for fewer than three factors or where they do not
+/// determine it.
 ///
 /// The better one has the smaller residual variance, sum of squares over degrees of freedom. Every
 /// temperature weighs the same: that laws are no more than approximations is what they miss
@@ -53,29 +54,38 @@ fn arrhenius(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
     Some(FittedLaw { law, confidence_95: Some(vec![half_width]), residual_decades })
 }
 
-/// `ln b = m ln(T / T_r)` through the fitted vertical factors: a line through the reference.
-pub(super) fn fit_vertical(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedVertical> {
+/// `ln b = m ln(T / T_r)` through fitted vertical factors, given as temperature in °C and ln b with
+/// their covariance: a line through the reference by generalised least squares, since neighbours
+/// share most of their error. The interval is wider by the root of the mean square misfit, in
+/// standard deviations, where that is above 1.
+pub(super) fn fit_vertical(
+    factors: &[(f64, f64)],
+    covariance: &DMatrix<f64>,
+    reference_c: f64,
+) -> Option<FittedVertical> {
     let unit = VerticalShift::Power { exponent: 1.0 };
-    let points: Vec<[f64; 2]> = shifts
-        .iter()
-        .filter(|shift| shift.temperature_c != reference_c && !shift.uncertain)
-        .filter_map(|shift| {
-            let factor = shift.vertical?.factor;
-            Some([unit.ln_factor(shift.temperature_c, reference_c), factor.ln()])
-        })
-        .collect();
-    let squares: f64 = points.iter().map(|[x, _]| x * x).sum();
-    let exponent = points.iter().map(|[x, ln]| x * ln).sum::<f64>() / squares;
+    let x = DVector::from_iterator(
+        factors.len(),
+        factors.iter().map(|(temperature_c, _)| unit.ln_factor(*temperature_c, reference_c)),
+    );
+    let ln = DVector::from_iterator(factors.len(), factors.iter().map(|(_, ln)| *ln));
+    let scale = covariance.diagonal().max();
+    let inverse = (covariance / scale).try_inverse()?;
+    let weight = x.dot(&(&inverse * &x));
+    let exponent = x.dot(&(&inverse * &ln)) / weight;
+    let misses = ln - x * exponent;
     if !exponent.is_finite() {
         return None;
     }
-    let misses: f64 = points.iter().map(|[x, ln]| (ln - exponent * x).powi(2)).sum();
-    let freedom = points.len() as f64 - 1.0;
-    let residual = (freedom > 0.0).then(|| (misses / freedom).sqrt());
+    let freedom = factors.len() as f64 - 1.0;
+    let confidence = || {
+        let squares = misses.dot(&(&inverse * &misses)) / scale / freedom;
+        student_t_975(freedom) * (scale / weight * squares.max(1.0)).sqrt()
+    };
     Some(FittedVertical {
         law: VerticalShift::Power { exponent },
-        confidence_95: residual.map(|s| student_t_975(freedom) * s / squares.sqrt()),
-        residual,
+        confidence_95: (freedom > 0.0).then(confidence),
+        residual: (freedom > 0.0).then(|| (misses.norm_squared() / freedom).sqrt()),
     })
 }
 

@@ -13,6 +13,7 @@
 //! factor b_T is 1 unless a choice says otherwise ([`VerticalChoice`]).
 
 mod chain;
+mod covariance;
 mod doubts;
 mod join;
 mod law;
@@ -23,6 +24,7 @@ mod shift;
 mod sweep;
 mod table;
 mod terms;
+mod verticals;
 
 #[cfg(test)]
 mod shift_tests;
@@ -42,6 +44,7 @@ pub use table::{
 
 use chain::Chain;
 use model::{Datum, Prony};
+use terms::Fitted;
 
 /// Decades by which relaxation times may lie outside the measured range.
 const MARGIN_DECADES: f64 = 1.0;
@@ -80,12 +83,23 @@ pub fn fit_sweeps(sweeps: &[Sweep], options: &FitOptions) -> Result<MasterCurve,
         None => chain::joined(sweeps, options)?,
     };
     let data = problem(&chain);
-    let choose = match data.free_verticals {
-        true => terms::choose_with_free_verticals,
-        false => terms::choose,
-    };
-    let (fitted, candidates) = choose(&data, options.terms, chain.start())?;
+    let (fitted, candidates) = fitted(&chain, &data, options)?;
     Ok(MasterCurve::new(&chain, &fitted, candidates))
+}
+
+fn fitted(
+    chain: &Chain,
+    data: &Prony,
+    options: &FitOptions,
+) -> Result<(Fitted, Vec<Candidate>), FitError> {
+    if matches!(chain.vertical, VerticalChoice::Free { .. }) {
+        return verticals::choose(data, options.terms, &chain.starts());
+    }
+    let held = Prony { verticals: None, ..data.clone() };
+    let (held, candidates) = terms::choose(&held, options.terms, chain.start())?;
+    // Sweeps that hardly show their shift: what one specimen differs from the next moves them too.
+    let freed = data.verticals.is_some().then(|| verticals::freed(data, &held).1).flatten();
+    Ok((freed.unwrap_or(held), candidates))
 }
 
 fn problem(chain: &Chain) -> Prony {
@@ -112,6 +126,6 @@ fn problem(chain: &Chain) -> Prony {
         reference: *reference,
         limits,
         given_shifts: chain.given.then(|| ln_shifts.clone()),
-        free_verticals: chain.vertical == VerticalChoice::Free,
+        verticals: chain.free_verticals(),
     }
 }
