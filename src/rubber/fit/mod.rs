@@ -30,6 +30,8 @@ mod verticals;
 mod shift_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vertical_tests;
 
 pub use doubts::doubts;
 pub use result::{
