@@ -12,9 +12,6 @@ use std::f64::consts::LN_10;
 const NO_SHIFT_DECADES: f64 = 1e-6;
 /// Standard deviation by which moduli differ from clamping to clamping of a specimen, relative.
 const CLAMPING: f64 = 0.01;
-/// Powers of the absolute temperature from which free vertical factors start, beside density times
-/// temperature. 0 is no factor at all; moduli of filled rubbers fall with temperature.
-const STARTING_EXPONENTS: [f64; 4] = [-3.0, -1.0, 0.0, 3.0];
 
 /// Sweeps by ascending temperature that hang together.
 #[derive(Debug)]
@@ -75,27 +72,23 @@ impl Chain {
         free.contains(&true).then_some(FreeVerticals { free, steps, noise: 0.0 })
     }
 
-    /// Where a fit of vertical factors starts: from the known ones, from powers of the absolute
-    /// temperature, and from what tan δ, which no factor changes, says of the shifts.
+    /// Where a fit of vertical factors starts: from the known ones, from none, and from what tan δ,
+    /// which no factor changes, says of the shifts.
     pub fn starts(&self) -> Vec<Start> {
         let sweeps = self.sweeps.len();
         let mut starts =
             vec![Start { ln_shifts: self.ln_shifts.clone(), ln_verticals: vec![0.0; sweeps] }];
-        let Some(reference_c) = self.reference_c.filter(|_| !self.given) else { return starts };
-        let known: Vec<f64> = (0..sweeps).map(|k| self.ln_known_vertical(k)).collect();
-        let scaled = |ln: &[f64]| -> Vec<Sweep> {
-            self.sweeps.iter().zip(ln).map(|(sweep, ln)| divided(sweep, ln.exp())).collect()
-        };
-        for exponent in STARTING_EXPONENTS {
-            let power = VerticalShift::Power { exponent };
-            let ln = |sweep: &Sweep| power.ln_factor(celsius(sweep), reference_c);
-            let ln: Vec<f64> = self.sweeps.iter().map(ln).collect();
-            starts.push(Start {
-                ln_shifts: shift::by_storage_from(&scaled(&ln), &self.ln_shifts),
-                ln_verticals: ln.iter().zip(&known).map(|(ln, known)| ln - known).collect(),
-            });
+        if self.given {
+            return starts;
         }
-        starts.push(shift::by_loss_factor_from(&scaled(&known), &self.ln_shifts));
+        let known: Vec<f64> = (0..sweeps).map(|k| self.ln_known_vertical(k)).collect();
+        let by_known = |(sweep, ln): (&Sweep, &f64)| divided(sweep, ln.exp());
+        let reduced: Vec<Sweep> = self.sweeps.iter().zip(&known).map(by_known).collect();
+        starts.push(Start {
+            ln_shifts: shift::by_storage_from(&self.sweeps, &self.ln_shifts),
+            ln_verticals: known.iter().map(|ln| -ln).collect(),
+        });
+        starts.push(shift::by_loss_factor_from(&reduced, &self.ln_shifts));
         for start in &mut starts {
             for values in [&mut start.ln_shifts, &mut start.ln_verticals] {
                 let at_reference = values[self.reference];

@@ -28,6 +28,8 @@ pub(super) const WALK_PER_ROOT_K: f64 = 0.035;
 const MOST_ROUNDS: usize = 4;
 /// Rounds of the noise, by which the prior is weighed; three are usual.
 const MOST_UPDATES: usize = 12;
+/// Difference of criteria below which two ends are the same but for round-off.
+const CLEARLY_BETTER: f64 = 0.1;
 /// Relative change of the noise that no interval shows.
 const SAME_NOISE: f64 = 0.02;
 
@@ -53,19 +55,39 @@ pub(super) fn choose(
     wanted: Option<usize>,
     starts: &[Start],
 ) -> Result<(Fitted, Vec<Candidate>), FitError> {
-    let mut best: Result<End, FitError> = Err(FitError::Empty);
-    for (k, start) in starts.iter().enumerate() {
-        let end = from_start(data, wanted, start);
-        let better = match (&best, &end) {
-            (Ok(best), Ok(end)) => end.0 < best.0,
-            (Err(_), Ok(_)) => true,
-            (_, Err(_)) => k == 0,
-        };
-        if better {
+    let (first, others) = starts.split_first().ok_or(FitError::Empty)?;
+    let mut best = from_start(data, wanted, first)?;
+    for start in others {
+        let Some(end) = from_terms_of(data, &best, start) else { continue };
+        if end.0 < best.0 - CLEARLY_BETTER {
+            let Series { ln_shifts, ln_verticals, .. } = end.1.series.clone();
             best = end;
+            // Other factors may need another number of terms.
+            let start = Start { ln_shifts, ln_verticals };
+            if let Ok(end) = from_start(data, wanted, &start)
+                && end.0 < best.0
+            {
+                best = end;
+            }
         }
     }
-    best.map(|(_, fitted, candidates)| (fitted, candidates))
+    let (_, fitted, candidates) = best;
+    Ok((fitted, candidates))
+}
+
+/// Where the terms of a fit end with the shifts and factors of another start, held at first, then
+/// free, the prior weighed by the noise of that fit.
+fn from_terms_of(data: &Prony, end: &End, start: &Start) -> Option<End> {
+    let Fitted { problem, series, .. } = &end.1;
+    let held = Prony { terms: problem.terms, ..with_verticals_held(data, &start.ln_verticals) };
+    let mut series = Series { ln_shifts: start.ln_shifts.clone(), ..series.clone() };
+    series.ln_verticals.fill(0.0);
+    let minimum = minimise(&held, held.pack(&series))?;
+    let mut series = held.unpack(&minimum.parameters);
+    series.ln_verticals.clone_from(&start.ln_verticals);
+    let found = minimise(problem, problem.pack(&series));
+    let fitted = judge(problem.clone(), found, &mut series).1?;
+    Some((criterion(&fitted), fitted, end.2.clone()))
 }
 
 /// Few terms with free factors move whole sweeps away from the others and never find back. So the
