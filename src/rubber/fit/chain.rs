@@ -10,8 +10,6 @@ use std::f64::consts::LN_10;
 
 /// A `log10 a_T` that is that of the reference, but for rounding in a table.
 const NO_SHIFT_DECADES: f64 = 1e-6;
-/// Standard deviation by which moduli differ from clamping to clamping of a specimen, relative.
-const CLAMPING: f64 = 0.01;
 
 /// Sweeps by ascending temperature that hang together.
 #[derive(Debug)]
@@ -34,6 +32,8 @@ pub(super) struct Chain {
     pub joined_by_loss_c: Vec<[f64; 2]>,
     /// Whether a sweep lies behind a pair whose shift hardly shows, seen from the reference.
     pub uncertain: Vec<bool>,
+    /// The colder sweep of each such pair.
+    loose: Vec<usize>,
 }
 
 impl Chain {
@@ -57,19 +57,27 @@ impl Chain {
         }
     }
 
-    /// The vertical factors, relative to the known ones, that the fit has to find: all, or those of
-    /// the sweeps whose shift hardly shows.
+    /// The vertical factors, relative to the known ones, that the fit has to find.
     pub fn free_verticals(&self) -> Option<FreeVerticals> {
-        let all = matches!(self.vertical, VerticalChoice::Free { .. });
-        let free: Vec<bool> = (0..self.sweeps.len())
-            .map(|k| k != self.reference && (all || self.uncertain[k]))
-            .collect();
-        let step = |pair: &[Sweep]| match all {
-            true => WALK_PER_ROOT_K * (celsius(&pair[1]) - celsius(&pair[0])).sqrt(),
-            false => CLAMPING,
+        let step =
+            |pair: &[Sweep]| WALK_PER_ROOT_K * (celsius(&pair[1]) - celsius(&pair[0])).sqrt();
+        matches!(self.vertical, VerticalChoice::Free { .. }).then(|| FreeVerticals {
+            free: (0..self.sweeps.len()).map(|k| k != self.reference).collect(),
+            steps: self.sweeps.windows(2).map(step).collect(),
+            noise: 0.0,
+        })
+    }
+
+    /// By what ln a of a sweep may be off beyond what the scatter says, where pairs between it and
+    /// the reference hardly show their shift: each of them may be anywhere from no shift to sweeps
+    /// that just touch.
+    pub fn slack(&self, sweep: usize, ln_shifts: &[f64]) -> f64 {
+        let [from, to] = [sweep.min(self.reference), sweep.max(self.reference)];
+        let of = |k: &usize| {
+            let place = ln_shifts[*k] - ln_shifts[k + 1];
+            place.abs().max((ln_length(&self.sweeps[*k]) - place).abs())
         };
-        let steps = self.sweeps.windows(2).map(step).collect();
-        free.contains(&true).then_some(FreeVerticals { free, steps, noise: 0.0 })
+        self.loose.iter().filter(|k| (from..to).contains(*k)).map(of).sum()
     }
 
     /// Where a fit of vertical factors starts: from the known ones, from none, and from what tan δ,
@@ -97,6 +105,12 @@ impl Chain {
         }
         starts
     }
+}
+
+/// ln of the ratio of the highest and the lowest frequency.
+fn ln_length(sweep: &Sweep) -> f64 {
+    let last = sweep.points.last().map_or(1.0, |point| point.angular_frequency);
+    (last / sweep.points[0].angular_frequency).ln()
 }
 
 fn celsius(sweep: &Sweep) -> f64 {
@@ -162,6 +176,12 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
             .collect(),
         joined_by_loss_c: by_loss.map(|k| [temperature(*k), temperature(k + 1)]).collect(),
         uncertain: group.clone().map(uncertain).collect(),
+        loose: first
+            .uncertain
+            .iter()
+            .filter(|k| group.contains(k) && group.contains(&(*k + 1)))
+            .map(|k| k - group.start)
+            .collect(),
         sweeps: sweeps[group].to_vec(),
     })
 }
@@ -191,6 +211,7 @@ pub(super) fn given(
         left_out: Vec::new(),
         joined_by_loss_c: Vec::new(),
         uncertain: vec![false; sweeps.len()],
+        loose: Vec::new(),
         sweeps,
     };
     if let [Sweep { temperature_c: None, .. }] = chain.sweeps[..] {

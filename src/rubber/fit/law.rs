@@ -57,9 +57,10 @@ fn arrhenius(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
 /// `ln b = m ln(T / T_r)` through fitted vertical factors, given as temperature in °C and ln b with
 /// their covariance: a line through the reference by generalised least squares, since neighbours
 /// share most of their error. The interval is wider by the root of the mean square misfit, in
-/// standard deviations, where that is above 1.
+/// standard deviations, where that is above 1, and by the largest difference of alternatives.
 pub(super) fn fit_vertical(
     factors: &[(f64, f64)],
+    alternatives: &[Vec<(f64, f64)>],
     covariance: &DMatrix<f64>,
     reference_c: f64,
 ) -> Option<FittedVertical> {
@@ -68,19 +69,24 @@ pub(super) fn fit_vertical(
         factors.len(),
         factors.iter().map(|(temperature_c, _)| unit.ln_factor(*temperature_c, reference_c)),
     );
-    let ln = DVector::from_iterator(factors.len(), factors.iter().map(|(_, ln)| *ln));
+    let ln = |factors: &[(f64, f64)]| {
+        DVector::from_iterator(factors.len(), factors.iter().map(|(_, ln)| *ln))
+    };
     let scale = covariance.diagonal().max();
     let inverse = (covariance / scale).try_inverse()?;
     let weight = x.dot(&(&inverse * &x));
-    let exponent = x.dot(&(&inverse * &ln)) / weight;
-    let misses = ln - x * exponent;
+    let through = |ln: &DVector<f64>| x.dot(&(&inverse * ln)) / weight;
+    let exponent = through(&ln(factors));
+    let others = alternatives.iter().map(|other| (through(&ln(other)) - exponent).abs());
+    let spread = others.fold(0.0, f64::max);
+    let misses = ln(factors) - &x * exponent;
     if !exponent.is_finite() {
         return None;
     }
     let freedom = factors.len() as f64 - 1.0;
     let confidence = || {
         let squares = misses.dot(&(&inverse * &misses)) / scale / freedom;
-        student_t_975(freedom) * (scale / weight * squares.max(1.0)).sqrt()
+        (student_t_975(freedom) * (scale / weight * squares.max(1.0)).sqrt()).hypot(spread)
     };
     Some(FittedVertical {
         law: VerticalShift::Power { exponent },

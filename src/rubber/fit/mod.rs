@@ -97,11 +97,7 @@ fn fitted(
     if matches!(chain.vertical, VerticalChoice::Free { .. }) {
         return verticals::choose(data, options.terms, &chain.starts());
     }
-    let held = Prony { verticals: None, ..data.clone() };
-    let (held, candidates) = terms::choose(&held, options.terms, chain.start())?;
-    // Sweeps that hardly show their shift: what one specimen differs from the next moves them too.
-    let freed = data.verticals.is_some().then(|| verticals::freed(data, &held).1).flatten();
-    Ok((freed.unwrap_or(held), candidates))
+    terms::choose(data, options.terms, chain.start())
 }
 
 fn problem(chain: &Chain) -> Prony {

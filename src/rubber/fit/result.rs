@@ -234,7 +234,7 @@ impl MasterCurve {
 
 fn shift_factors(
     chain: &Chain,
-    Fitted { problem, series, .. }: &Fitted,
+    Fitted { problem, series, alternatives, .. }: &Fitted,
     covariance: &Covariance,
 ) -> Vec<ShiftFactor> {
     if chain.sweeps.len() < 2 {
@@ -247,8 +247,11 @@ fn shift_factors(
         });
         return given.collect();
     }
-    let half_width =
-        |column: Option<usize>| column.and_then(|column| covariance.half_width(column));
+    let half_width = |column: Option<usize>, k: usize, of: fn(&Series) -> &[f64]| {
+        let spread = |other: &Series| (of(other)[k] - of(series)[k]).abs();
+        let spread = alternatives.iter().map(spread).fold(0.0, f64::max);
+        column.and_then(|column| covariance.half_width(column)).map(|half| half.hypot(spread))
+    };
     let vertical = |k: usize| match chain.vertical {
         VerticalChoice::None => None,
         VerticalChoice::RhoT { .. } => {
@@ -257,12 +260,15 @@ fn shift_factors(
         VerticalChoice::Free { .. } => {
             let ln = chain.ln_known_vertical(k) + series.ln_verticals[k];
             let interval = |half: f64| [(ln - half).exp(), (ln + half).exp()];
-            let confidence_95 = half_width(problem.vertical_index(k)).map(interval);
+            let confidence_95 =
+                half_width(problem.vertical_index(k), k, |series| &series.ln_verticals)
+                    .map(interval);
             Some(VerticalFactor { factor: ln.exp(), confidence_95 })
         }
     };
     let factor = |(k, sweep): (usize, &Sweep)| {
-        let confidence_95 = half_width(problem.shift_index(k)).map(|half| half / LN_10);
+        let half = half_width(problem.shift_index(k), k, |series| &series.ln_shifts);
+        let confidence_95 = half.map(|half| (half + chain.slack(k, &series.ln_shifts)) / LN_10);
         let wide = confidence_95.is_some_and(|half| half > WIDEST_DECADES);
         sweep.temperature_c.map(|temperature_c| ShiftFactor {
             temperature_c,
@@ -284,15 +290,18 @@ fn vertical(chain: &Chain, fitted: &Fitted, covariance: &Covariance) -> Option<F
             Some(FittedVertical { law, confidence_95: None, residual: None })
         }
         VerticalChoice::Free { .. } => {
-            let Fitted { problem, series, .. } = fitted;
+            let Fitted { problem, series, alternatives, .. } = fitted;
             let free = || (0..chain.sweeps.len()).filter(|k| problem.vertical_index(*k).is_some());
             let columns: Vec<usize> = free().filter_map(|k| problem.vertical_index(k)).collect();
-            let factor = |k: usize| {
+            let factor = |k: usize, series: &Series| {
                 let ln = chain.ln_known_vertical(k) + series.ln_verticals[k];
                 Some((chain.sweeps[k].temperature_c?, ln))
             };
-            let factors: Vec<(f64, f64)> = free().filter_map(factor).collect();
-            fit_vertical(&factors, &covariance.of(&columns)?, chain.reference_c?)
+            let factors = |series: &Series| -> Vec<(f64, f64)> {
+                free().filter_map(|k| factor(k, series)).collect()
+            };
+            let others: Vec<_> = alternatives.iter().map(factors).collect();
+            fit_vertical(&factors(series), &others, &covariance.of(&columns)?, chain.reference_c?)
         }
     }
 }

@@ -17,7 +17,7 @@ use std::ops::Range;
 
 /// Points of each of two sweeps that must lie in the moduli of the other.
 const LEAST_COMMON_POINTS: usize = 2;
-/// Change of ln E' over two sweeps that tells their shift: samples of one rubber differ by some
+/// Change of ln E' over a sweep that tells their shift: samples of one rubber differ by some
 /// per cent from clamping to clamping.
 const LEAST_CHANGE: f64 = 0.05;
 
@@ -34,7 +34,7 @@ pub(super) struct FirstShifts {
     /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
     pub by_loss: Vec<usize>,
     /// The colder one of each pair whose shift hardly shows: E' changes by little more than it
-    /// scatters, and E'' and tan δ are flat or tell of another shift.
+    /// scatters, and E'' and tan δ are flat.
     pub uncertain: Vec<usize>,
 }
 
@@ -75,9 +75,15 @@ pub(super) fn first_shifts(sweeps: &[Sweep]) -> FirstShifts {
 fn joined(colder: &Sweep, hotter: &Sweep) -> Option<Pair> {
     let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
     let plain = |ln_shift: f64| {
-        let confirmed = || by_loss().is_some_and(|loss: f64| (loss - ln_shift).abs() < AGREEMENT);
-        let uncertain = change(colder, hotter) < LEAST_CHANGE && !confirmed();
-        Pair { ln_shift, by_loss: false, uncertain }
+        let pair = |ln_shift, uncertain| Pair { ln_shift, by_loss: false, uncertain };
+        if change(colder).max(change(hotter)) > LEAST_CHANGE {
+            return pair(ln_shift, false);
+        }
+        match by_loss() {
+            Some(loss) if (loss - ln_shift).abs() < AGREEMENT => pair(ln_shift, false),
+            Some(loss) => pair(loss, false),
+            None => pair(ln_shift, true),
+        }
     };
     by_storage(colder, hotter)
         .map(plain)
@@ -109,9 +115,9 @@ pub(super) fn by_loss_factor_from(sweeps: &[Sweep], ln_shifts: &[f64]) -> Start 
     start
 }
 
-/// By what ln E' changes over both sweeps.
-fn change(colder: &Sweep, hotter: &Sweep) -> f64 {
-    let moduli = || colder.points.iter().chain(&hotter.points).map(|point| point.storage_modulus);
+/// By what ln E' changes over a sweep.
+fn change(sweep: &Sweep) -> f64 {
+    let moduli = || sweep.points.iter().map(|point| point.storage_modulus);
     (moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)).ln()
 }
 

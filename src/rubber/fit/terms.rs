@@ -39,6 +39,8 @@ pub(super) struct Fitted {
     pub problem: Prony,
     pub series: Series,
     pub rms: f64,
+    /// Other numbers of terms that the data do not tell from this one, of free vertical factors.
+    pub alternatives: Vec<Series>,
 }
 
 impl Fitted {
@@ -61,8 +63,22 @@ impl Fitted {
 pub(super) fn choose(
     data: &Prony,
     wanted: Option<usize>,
-    mut previous: Series,
+    previous: Series,
 ) -> Result<(Fitted, Vec<Candidate>), FitError> {
+    let (fitted, candidates, _) = choose_of_all(data, wanted, previous)?;
+    Ok((fitted, candidates))
+}
+
+/// [`choose`], with the fits of all numbers of terms that were tried and may be used.
+///
+/// # Errors
+/// As [`choose`].
+pub(super) fn choose_of_all(
+    data: &Prony,
+    wanted: Option<usize>,
+    mut previous: Series,
+) -> Result<(Fitted, Vec<Candidate>, Vec<Fitted>), FitError> {
+    let mut all = Vec::new();
     let most = most_terms(data, &previous.ln_shifts);
     if most == 0 || wanted.is_some_and(|wanted| wanted > most_determined(data)) {
         let needed = (2 * wanted.unwrap_or(1) + without_terms(data) + 2).div_ceil(2);
@@ -76,6 +92,7 @@ pub(super) fn choose(
         let found = best_minimum(&problem, &previous);
         let (candidate, fitted) = judge(problem, found, &mut previous);
         since_best += 1;
+        all.extend(fitted.clone());
         if let (Some(fitted), Some(criterion)) = (fitted, candidate.bic) {
             let asked = wanted == Some(terms);
             if asked
@@ -93,7 +110,7 @@ pub(super) fn choose(
         }
     }
     match best {
-        Some((_, fitted)) => Ok((fitted, candidates)),
+        Some((_, fitted)) => Ok((fitted, candidates, all)),
         None => {
             let last = candidates.iter().rev().find_map(|candidate| candidate.rejected);
             Err(FitError::NoFit { terms: wanted, reason: last.unwrap_or("it did not converge") })
@@ -150,7 +167,7 @@ pub(super) fn judge(
     let parameters = problem.parameters() as f64 + 1.0;
     let bic = n * minimum.rms.max(ROUND_OFF).powi(2).ln() + parameters * n.ln();
     let candidate = Candidate { terms, rms_misfit: Some(minimum.rms), bic: Some(bic), rejected };
-    let fitted = Fitted { problem, series, rms: minimum.rms };
+    let fitted = Fitted { problem, series, rms: minimum.rms, alternatives: Vec::new() };
     (candidate, rejected.is_none().then_some(fitted))
 }
 

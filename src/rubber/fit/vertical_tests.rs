@@ -164,7 +164,7 @@ fn table_of_misses() {
     let of = &|(name, rubber, seeds): &(&str, Rubber, u64)| {
         for (truth_name, truth) in truths {
             for (choice_name, choice) in choices {
-                let line = Tally::of(rubber, truth, choice, 0..*seeds).line();
+                let line = Tally::of(rubber, truth, choice, 00..*seeds).line();
                 println!("| {name} | {truth_name} | {choice_name} | {line} |");
             }
         }

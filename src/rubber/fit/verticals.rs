@@ -14,6 +14,10 @@
 //! ```
 //!
 //! with the n residuals r of moduli and p parameters.
+//!
+//! Where a spectrum has no features, a few terms have some and the shifts follow them: fits of
+//! other numbers of terms, as good as the chosen one, then have other shifts. Their largest difference
+//! from the chosen one is added to the interval.
 
 use super::least_squares::{ROUND_OFF, minimise};
 use super::model::{FreeVerticals, Prony, Series};
@@ -28,6 +32,9 @@ pub(super) const WALK_PER_ROOT_K: f64 = 0.035;
 const MOST_ROUNDS: usize = 4;
 /// Rounds of the noise, by which the prior is weighed; three are usual.
 const MOST_UPDATES: usize = 12;
+/// Quantiles (95 %) of chi square for two degrees of freedom a term: one, two and three terms more or
+/// less.
+const NEIGHBOURS: [f64; 3] = [5.991, 9.488, 12.592];
 /// Difference of criteria below which two ends are the same but for round-off.
 const CLEARLY_BETTER: f64 = 0.1;
 /// Relative change of the noise that no interval shows.
@@ -60,15 +67,9 @@ pub(super) fn choose(
     for start in others {
         let Some(end) = from_terms_of(data, &best, start) else { continue };
         if end.0 < best.0 - CLEARLY_BETTER {
-            let Series { ln_shifts, ln_verticals, .. } = end.1.series.clone();
-            best = end;
             // Other factors may need another number of terms.
-            let start = Start { ln_shifts, ln_verticals };
-            if let Ok(end) = from_start(data, wanted, &start)
-                && end.0 < best.0
-            {
-                best = end;
-            }
+            let Series { ln_shifts, ln_verticals, .. } = end.1.series;
+            best = from_start(data, wanted, &Start { ln_shifts, ln_verticals }).unwrap_or(best);
         }
     }
     let (_, fitted, candidates) = best;
@@ -91,7 +92,8 @@ fn from_terms_of(data: &Prony, end: &End, start: &Start) -> Option<End> {
 }
 
 /// Few terms with free factors move whole sweeps away from the others and never find back. So the
-/// number of terms is chosen with the factors held, then they are freed, until the number stays.
+/// number of terms is chosen with the factors held, then they are freed, as long as the number grows:
+/// fewer terms bend the shifts until their own bumps fit.
 fn from_start(data: &Prony, wanted: Option<usize>, start: &Start) -> Result<End, FitError> {
     let mut start = start.clone();
     let mut best: Option<End> = None;
@@ -103,29 +105,45 @@ fn from_start(data: &Prony, wanted: Option<usize>, start: &Start) -> Result<End,
             ln_shifts: start.ln_shifts,
             ln_verticals: vec![0.0; data.sweeps],
         };
-        let (mut held, candidates) =
-            terms::choose(&with_verticals_held(data, &start.ln_verticals), wanted, without_terms)?;
-        held.series.ln_verticals = start.ln_verticals;
-        let (series, fitted) = freed(data, &held);
-        if let Some(fitted) = fitted {
-            let criterion = criterion(&fitted);
-            if best.as_ref().is_none_or(|best| criterion < best.0) {
-                best = Some((criterion, fitted, candidates));
-            }
-        }
-        if held.problem.terms == terms {
+        let held = with_verticals_held(data, &start.ln_verticals);
+        let (mut chosen, candidates, mut all) = terms::choose_of_all(&held, wanted, without_terms)?;
+        if chosen.problem.terms <= terms {
             break;
         }
-        terms = held.problem.terms;
-        start = Start { ln_shifts: series.ln_shifts, ln_verticals: series.ln_verticals };
+        terms = chosen.problem.terms;
+        for fit in all.iter_mut().chain([&mut chosen]) {
+            fit.series.ln_verticals.clone_from(&start.ln_verticals);
+        }
+        // Freed, a term too many may vanish: then the next number that holds.
+        let fewer = all.iter().rev().filter(|fit| fit.problem.terms < terms);
+        let mut fits = std::iter::once(&chosen).chain(fewer).map(|fit| freed(data, fit));
+        let Some(mut fitted) = fits.find_map(|fitted| fitted) else { break };
+        fitted.alternatives = alternatives(data, &fitted, &all);
+        let Series { ln_shifts, ln_verticals, .. } = fitted.series.clone();
+        start = Start { ln_shifts, ln_verticals };
+        best = Some((criterion(&fitted), fitted, candidates));
     }
     let reason = "with free vertical factors it did not converge";
     best.ok_or(FitError::NoFit { terms: wanted, reason })
 }
 
-/// A fit with its vertical factors freed, from those of its series: where it ends, and the fit if it
-/// is one. The noise that weighs the prior is that of the fit itself.
-pub(super) fn freed(data: &Prony, held: &Fitted) -> (Series, Option<Fitted>) {
+/// The fits of neighbouring numbers of terms, freed, whose misfit is as good as that of the chosen
+/// one by the likelihood ratio (95 %).
+fn alternatives(data: &Prony, chosen: &Fitted, all: &[Fitted]) -> Vec<Series> {
+    let near = |fit: &&Fitted| {
+        (1..=NEIGHBOURS.len()).contains(&fit.problem.terms.abs_diff(chosen.problem.terms))
+    };
+    let indistinct = |fit: &Fitted| {
+        let difference = fit.problem.terms.abs_diff(chosen.problem.terms);
+        let n = 2.0 * data.data.len() as f64;
+        n * (mean_square(fit) / mean_square(chosen)).ln() < NEIGHBOURS[difference - 1]
+    };
+    let freed = |fit: &Fitted| freed(data, fit).filter(indistinct);
+    all.iter().filter(near).filter_map(freed).map(|fit| fit.series).collect()
+}
+
+/// A fit with its vertical factors freed, from those of its series, if it may be used. The noise that weighs the prior is that of the fit itself.
+fn freed(data: &Prony, held: &Fitted) -> Option<Fitted> {
     let mut noise = held.noise();
     let mut series = held.series.clone();
     let mut fitted = None;
@@ -142,7 +160,7 @@ pub(super) fn freed(data: &Prony, held: &Fitted) -> (Series, Option<Fitted>) {
             break;
         }
     }
-    (series, fitted)
+    fitted
 }
 
 /// The problem with given vertical factors that are not fitted.
@@ -155,13 +173,17 @@ fn with_verticals_held(data: &Prony, ln_verticals: &[f64]) -> Prony {
     held
 }
 
-fn criterion(fitted: &Fitted) -> f64 {
-    let residuals = fitted.problem.residuals_of(&fitted.series);
+/// Of the residuals of moduli.
+fn mean_square(fitted: &Fitted) -> f64 {
     let n = 2 * fitted.problem.data.len();
-    let mean_square = residuals.rows(0, n).norm_squared() / n as f64;
+    let residuals = fitted.problem.residuals_of(&fitted.series);
+    (residuals.rows(0, n).norm_squared() / n as f64).max(ROUND_OFF * ROUND_OFF)
+}
+
+fn criterion(fitted: &Fitted) -> f64 {
+    let n = 2.0 * fitted.problem.data.len() as f64;
     let parameters = fitted.problem.parameters() as f64 + 1.0;
-    let prior: f64 =
-        fitted.problem.verticals.iter().map(|free| free.improbability(&fitted.series)).sum();
-    let n = n as f64;
-    n * mean_square.max(ROUND_OFF * ROUND_OFF).ln() + parameters * n.ln() + prior
+    let verticals = fitted.problem.verticals.iter();
+    let prior: f64 = verticals.map(|free| free.improbability(&fitted.series)).sum();
+    n * mean_square(fitted).ln() + parameters * n.ln() + prior
 }
