@@ -116,8 +116,8 @@ fn from_start(data: &Prony, wanted: Option<usize>, start: &Start) -> Result<End,
         }
         // Freed, a term too many may vanish: then the next number that holds.
         let fewer = all.iter().rev().filter(|fit| fit.problem.terms < terms);
-        let mut fits = std::iter::once(&chosen).chain(fewer).map(|fit| freed(data, fit));
-        let Some(mut fitted) = fits.find_map(|fitted| fitted) else { break };
+        let mut fits = std::iter::once(&chosen).chain(fewer).filter_map(|fit| freed(data, fit));
+        let Some((mut fitted, _)) = fits.find(|(_, usable)| *usable) else { break };
         fitted.alternatives = alternatives(data, &fitted, &all);
         let Series { ln_shifts, ln_verticals, .. } = fitted.series.clone();
         start = Start { ln_shifts, ln_verticals };
@@ -138,29 +138,31 @@ fn alternatives(data: &Prony, chosen: &Fitted, all: &[Fitted]) -> Vec<Series> {
         let n = 2.0 * data.data.len() as f64;
         n * (mean_square(fit) / mean_square(chosen)).ln() < NEIGHBOURS[difference - 1]
     };
-    let freed = |fit: &Fitted| freed(data, fit).filter(indistinct);
-    all.iter().filter(near).filter_map(freed).map(|fit| fit.series).collect()
+    // Even those that may not be used, for want of a term that shows, say what shifts are possible.
+    let freed = all.iter().filter(near).filter_map(|fit| freed(data, fit));
+    freed.map(|(fit, _)| fit).filter(indistinct).map(|fit| fit.series).collect()
 }
 
-/// A fit with its vertical factors freed, from those of its series, if it may be used. The noise that weighs the prior is that of the fit itself.
-fn freed(data: &Prony, held: &Fitted) -> Option<Fitted> {
+/// A fit with its vertical factors freed, from those of its series, and whether it may be used. The
+/// noise that weighs the prior is that of the fit itself.
+fn freed(data: &Prony, held: &Fitted) -> Option<(Fitted, bool)> {
     let mut noise = held.noise();
     let mut series = held.series.clone();
-    let mut fitted = None;
-    for _ in 0..MOST_UPDATES {
+    for round in 1.. {
         let verticals = data.verticals.clone().map(|free| FreeVerticals { noise, ..free });
         let problem = Prony { terms: held.problem.terms, verticals, ..data.clone() };
         let found = minimise(&problem, problem.pack(&series));
-        fitted = judge(problem, found, &mut series).1;
-        let Some(fit) = &fitted else { break };
+        let candidate = judge(problem.clone(), found, &mut series).0;
+        let rms = candidate.rms_misfit?;
+        let fit = Fitted { problem, series: series.clone(), rms, alternatives: Vec::new() };
         let next = fit.noise();
         let settled = next < ROUND_OFF || (next / noise - 1.0).abs() < SAME_NOISE;
-        noise = next;
-        if settled {
-            break;
+        if settled || round == MOST_UPDATES {
+            return Some((fit, candidate.rejected.is_none()));
         }
+        noise = next;
     }
-    fitted
+    None
 }
 
 /// The problem with given vertical factors that are not fitted.
