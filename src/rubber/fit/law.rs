@@ -197,6 +197,25 @@ mod tests {
     }
 
     #[test]
+    fn vertical_factors_weigh_by_their_covariance() {
+        let power = VerticalShift::Power { exponent: 1.5 };
+        let factor = |celsius: f64| (celsius, power.ln_factor(celsius, 20.0));
+        let mut factors: Vec<_> = [-20.0, 0.0, 40.0, 60.0].map(factor).to_vec();
+        let mut covariance = DMatrix::identity(4, 4) * 1e-4;
+        let exponent = |factors: &[(f64, f64)], covariance: &DMatrix<f64>| {
+            let fitted = fit_vertical(factors, &[], covariance, 20.0).unwrap();
+            let VerticalShift::Power { exponent } = fitted.law else { panic!("{fitted:?}") };
+            exponent
+        };
+        approx::assert_relative_eq!(exponent(&factors, &covariance), 1.5, max_relative = 1e-12);
+        // One factor that is off and says so does no harm.
+        factors[3].1 += 1.0;
+        assert!((exponent(&factors, &covariance) - 1.5).abs() > 1.0);
+        covariance[(3, 3)] = 1e4;
+        assert!((exponent(&factors, &covariance) - 1.5).abs() < 1e-3);
+    }
+
+    #[test]
     fn few_factors_give_arrhenius_alone() {
         let law = ShiftLaw::Wlf { c1: 8.86, c2_k: 101.6 };
         let laws = fit_laws(&factors(law, &[0.0, 20.0, 40.0]), 20.0);
