@@ -34,7 +34,7 @@ pub(super) struct FirstShifts {
     /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
     pub by_loss: Vec<usize>,
     /// The colder one of each pair whose shift hardly shows: E' changes by little more than it
-    /// scatters, and E'' and tan δ are flat.
+    /// scatters, and E'' and tan δ are flat or tell of another shift.
     pub uncertain: Vec<usize>,
 }
 
@@ -75,15 +75,9 @@ pub(super) fn first_shifts(sweeps: &[Sweep]) -> FirstShifts {
 fn joined(colder: &Sweep, hotter: &Sweep) -> Option<Pair> {
     let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
     let plain = |ln_shift: f64| {
-        let pair = |ln_shift, uncertain| Pair { ln_shift, by_loss: false, uncertain };
-        if change(colder).max(change(hotter)) > LEAST_CHANGE {
-            return pair(ln_shift, false);
-        }
-        match by_loss() {
-            Some(loss) if (loss - ln_shift).abs() < AGREEMENT => pair(ln_shift, false),
-            Some(loss) => pair(loss, false),
-            None => pair(ln_shift, true),
-        }
+        let confirmed = || by_loss().is_some_and(|loss: f64| (loss - ln_shift).abs() < AGREEMENT);
+        let uncertain = change(colder).max(change(hotter)) < LEAST_CHANGE && !confirmed();
+        Pair { ln_shift, by_loss: false, uncertain }
     };
     by_storage(colder, hotter)
         .map(plain)
