@@ -80,8 +80,8 @@ impl Chain {
         self.loose.iter().filter(|k| (from..to).contains(*k)).map(of).sum()
     }
 
-    /// Where a fit of vertical factors starts: from the known ones, from none, and from what tan δ,
-    /// which no factor changes, says of the shifts.
+    /// Where a fit of vertical factors starts: from the known ones, from none, from their squares, and
+    /// from what tan δ, which no factor changes, says of the shifts.
     pub fn starts(&self) -> Vec<Start> {
         let sweeps = self.sweeps.len();
         let mut starts =
@@ -90,13 +90,17 @@ impl Chain {
             return starts;
         }
         let known: Vec<f64> = (0..sweeps).map(|k| self.ln_known_vertical(k)).collect();
-        let by_known = |(sweep, ln): (&Sweep, &f64)| divided(sweep, ln.exp());
-        let reduced: Vec<Sweep> = self.sweeps.iter().zip(&known).map(by_known).collect();
-        starts.push(Start {
-            ln_shifts: shift::by_storage_from(&self.sweeps, &self.ln_shifts),
-            ln_verticals: known.iter().map(|ln| -ln).collect(),
-        });
-        starts.push(shift::by_loss_factor_from(&reduced, &self.ln_shifts));
+        let divided_by = |power: f64| -> Vec<Sweep> {
+            let pairs = self.sweeps.iter().zip(&known);
+            pairs.map(|(sweep, ln)| divided(sweep, (power * ln).exp())).collect()
+        };
+        for power in [0.0, 2.0] {
+            starts.push(Start {
+                ln_shifts: shift::by_storage_from(&divided_by(power), &self.ln_shifts),
+                ln_verticals: known.iter().map(|ln| (power - 1.0) * ln).collect(),
+            });
+        }
+        starts.push(shift::by_loss_factor_from(&divided_by(1.0), &self.ln_shifts));
         for start in &mut starts {
             for values in [&mut start.ln_shifts, &mut start.ln_verticals] {
                 let at_reference = values[self.reference];

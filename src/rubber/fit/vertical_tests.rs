@@ -175,8 +175,8 @@ fn shifts_along_a_power_law_are_not_determined() {
 #[ignore = "prints the table of docs/rubber_data.md; minutes"]
 fn table_of_misses() {
     let rubbers = [
-        ("bumpy", broad().scaled(0.1), 40),
-        ("transition", transition(), 20),
+        ("bumpy", broad().scaled(0.1), 30),
+        ("transition", transition(), 12),
         ("power law", power_law(), 10),
     ];
     let truths = [("ρT", RHO_T), ("1/T", VerticalShift::Power { exponent: -1.0 })];

@@ -16,13 +16,15 @@
 //! with the n residuals r of moduli and p parameters.
 //!
 //! Where a spectrum has no features, a few terms have some and the shifts follow them: fits of
-//! other numbers of terms, as good as the chosen one, then have other shifts. Their largest difference
-//! from the chosen one is added to the interval.
+//! other numbers of terms, as good as the chosen one, then have other shifts, and so have factors that
+//! are not fitted but none at all, ρT or its square. The largest difference of what is as good from the
+//! chosen fit is added to the interval.
 
 use super::least_squares::{ROUND_OFF, minimise};
 use super::model::{FreeVerticals, Prony, Series};
 use super::terms::{self, Fitted, judge};
 use super::{Candidate, FitError};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Standard deviation of the change of `ln(b / ρT)` over a kelvin; it grows with the root of the
 /// difference. Over 100 K 95 % of the factors lie between half and twice that of density times
@@ -72,20 +74,41 @@ pub(super) fn choose(
             best = from_start(data, wanted, &Start { ln_shifts, ln_verticals }).unwrap_or(best);
         }
     }
-    let (_, fitted, candidates) = best;
+    let (_, mut fitted, candidates) = best;
+    let held = starts.iter().filter_map(|start| held_as_well(data, &fitted, start));
+    let held: Vec<Series> = held.collect();
+    fitted.alternatives.extend(held);
     Ok((fitted, candidates))
+}
+
+/// The terms of a fit with the vertical factors of a start, where that is as good by the likelihood
+/// ratio (95 %) as the fitted ones.
+fn held_as_well(data: &Prony, fitted: &Fitted, start: &Start) -> Option<Series> {
+    let held = held_at(data, fitted, start)?;
+    let n = 2.0 * data.data.len() as f64;
+    let factors = fitted.problem.parameters() - held.problem.parameters();
+    let quantile = ChiSquared::new(factors as f64).map(|chi| chi.inverse_cdf(0.95)).ok()?;
+    let worse = n * (held.rms.max(ROUND_OFF).powi(2) / mean_square(fitted)).ln();
+    (worse < quantile).then_some(held.series)
+}
+
+/// The terms of a fit with the vertical factors of a start, not fitted, shifts from there.
+fn held_at(data: &Prony, fitted: &Fitted, start: &Start) -> Option<Fitted> {
+    let terms = fitted.problem.terms;
+    let problem = Prony { terms, ..with_verticals_held(data, &start.ln_verticals) };
+    let mut series = Series { ln_shifts: start.ln_shifts.clone(), ..fitted.series.clone() };
+    series.ln_verticals.fill(0.0);
+    let minimum = minimise(&problem, problem.pack(&series))?;
+    let mut series = problem.unpack(&minimum.parameters);
+    series.ln_verticals.clone_from(&start.ln_verticals);
+    Some(Fitted { problem, series, rms: minimum.rms, alternatives: Vec::new() })
 }
 
 /// Where the terms of a fit end with the shifts and factors of another start, held at first, then
 /// free, the prior weighed by the noise of that fit.
 fn from_terms_of(data: &Prony, end: &End, start: &Start) -> Option<End> {
-    let Fitted { problem, series, .. } = &end.1;
-    let held = Prony { terms: problem.terms, ..with_verticals_held(data, &start.ln_verticals) };
-    let mut series = Series { ln_shifts: start.ln_shifts.clone(), ..series.clone() };
-    series.ln_verticals.fill(0.0);
-    let minimum = minimise(&held, held.pack(&series))?;
-    let mut series = held.unpack(&minimum.parameters);
-    series.ln_verticals.clone_from(&start.ln_verticals);
+    let problem = &end.1.problem;
+    let mut series = held_at(data, &end.1, start)?.series;
     let found = minimise(problem, problem.pack(&series));
     let fitted = judge(problem.clone(), found, &mut series).1?;
     Some((criterion(&fitted), fitted, end.2.clone()))
