@@ -75,21 +75,21 @@ pub(super) fn choose(
         }
     }
     let (_, mut fitted, candidates) = best;
-    let held = starts.iter().filter_map(|start| held_as_well(data, &fitted, start));
-    let held: Vec<Series> = held.collect();
-    fitted.alternatives.extend(held);
+    let held: Vec<Fitted> =
+        starts.iter().filter_map(|start| held_at(data, &fitted, start)).collect();
+    let as_good = held.into_iter().filter(|held| as_good(held, &fitted)).map(|held| held.series);
+    let as_good: Vec<Series> = as_good.collect();
+    fitted.alternatives.extend(as_good);
     Ok((fitted, candidates))
 }
 
-/// The terms of a fit with the vertical factors of a start, where that is as good by the likelihood
-/// ratio (95 %) as the fitted ones.
-fn held_as_well(data: &Prony, fitted: &Fitted, start: &Start) -> Option<Series> {
-    let held = held_at(data, fitted, start)?;
-    let n = 2.0 * data.data.len() as f64;
-    let factors = fitted.problem.parameters() - held.problem.parameters();
-    let quantile = ChiSquared::new(factors as f64).map(|chi| chi.inverse_cdf(0.95)).ok()?;
-    let worse = n * (held.rms.max(ROUND_OFF).powi(2) / mean_square(fitted)).ln();
-    (worse < quantile).then_some(held.series)
+/// Whether a fit with factors held is as good by the likelihood ratio (95 %) as one with them fitted.
+fn as_good(held: &Fitted, fitted: &Fitted) -> bool {
+    let n = 2.0 * fitted.problem.data.len() as f64;
+    let free = |k: usize| fitted.problem.vertical_index(k).is_some();
+    let factors = (0..fitted.problem.sweeps).filter(|k| free(*k)).count();
+    let quantile = ChiSquared::new(factors as f64).map_or(0.0, |chi| chi.inverse_cdf(0.95));
+    n * (held.rms.max(ROUND_OFF).powi(2) / mean_square(fitted)).ln() < quantile
 }
 
 /// The terms of a fit with the vertical factors of a start, not fitted, shifts from there.
@@ -142,6 +142,10 @@ fn from_start(data: &Prony, wanted: Option<usize>, start: &Start) -> Result<End,
         let mut fits = std::iter::once(&chosen).chain(fewer).filter_map(|fit| freed(data, fit));
         let Some((mut fitted, _)) = fits.find(|(_, usable)| *usable) else { break };
         fitted.alternatives = alternatives(data, &fitted, &all);
+        // Not of the same number of terms, perhaps.
+        if as_good(&chosen, &fitted) {
+            fitted.alternatives.push(chosen.series.clone());
+        }
         let Series { ln_shifts, ln_verticals, .. } = fitted.series.clone();
         start = Start { ln_shifts, ln_verticals };
         best = Some((criterion(&fitted), fitted, candidates));
