@@ -80,8 +80,8 @@ impl Chain {
         self.loose.iter().filter(|k| (from..to).contains(*k)).map(of).sum()
     }
 
-    /// Where a fit of vertical factors starts: from the known ones, from none, from their squares, and
-    /// from what tan δ, which no factor changes, says of the shifts.
+    /// Where a fit of vertical factors starts: from the known ones, from none, from both ends of
+    /// what is likely, and from what tan δ, which no factor changes, says of the shifts.
     pub fn starts(&self) -> Vec<Start> {
         let sweeps = self.sweeps.len();
         let mut starts =
@@ -90,17 +90,24 @@ impl Chain {
             return starts;
         }
         let known: Vec<f64> = (0..sweeps).map(|k| self.ln_known_vertical(k)).collect();
-        let divided_by = |power: f64| -> Vec<Sweep> {
-            let pairs = self.sweeps.iter().zip(&known);
-            pairs.map(|(sweep, ln)| divided(sweep, (power * ln).exp())).collect()
+        let divided_by = |ln: &[f64]| -> Vec<Sweep> {
+            self.sweeps.iter().zip(ln).map(|(sweep, ln)| divided(sweep, ln.exp())).collect()
         };
-        for power in [0.0, 2.0] {
-            starts.push(Start {
-                ln_shifts: shift::by_storage_from(&divided_by(power), &self.ln_shifts),
-                ln_verticals: known.iter().map(|ln| (power - 1.0) * ln).collect(),
-            });
+        let reference_c = celsius(&self.sweeps[self.reference]);
+        let difference = |k: usize| celsius(&self.sweeps[k]) - reference_c;
+        let span = (0..sweeps).map(|k| difference(k).abs()).fold(0.0, f64::max);
+        // Both ends of the prior's 95 % interval at the temperature that is furthest away.
+        let end = |sign: f64| {
+            let ln = move |k: usize| sign * 1.96 * WALK_PER_ROOT_K * difference(k) / span.sqrt();
+            (0..sweeps).map(ln).collect::<Vec<f64>>()
+        };
+        let none = known.iter().map(|ln| -ln).collect();
+        for ln_verticals in [none, end(1.0), end(-1.0)] {
+            let all: Vec<f64> = ln_verticals.iter().zip(&known).map(|(ln, at)| ln + at).collect();
+            let ln_shifts = shift::by_storage_from(&divided_by(&all), &self.ln_shifts);
+            starts.push(Start { ln_shifts, ln_verticals });
         }
-        starts.push(shift::by_loss_factor_from(&divided_by(1.0), &self.ln_shifts));
+        starts.push(shift::by_loss_factor_from(&divided_by(&known), &self.ln_shifts));
         for start in &mut starts {
             for values in [&mut start.ln_shifts, &mut start.ln_verticals] {
                 let at_reference = values[self.reference];

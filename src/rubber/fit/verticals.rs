@@ -17,7 +17,7 @@
 //!
 //! Where a spectrum has no features, a few terms have some and the shifts follow them: fits of
 //! other numbers of terms, as good as the chosen one, then have other shifts, and so have factors that
-//! are not fitted but none at all, ρT or its square. The largest difference of what is as good from the
+//! are not fitted but none at all, ρT or the ends of the interval about it. The largest difference of what is as good from the
 //! chosen fit is added to the interval.
 
 use super::least_squares::{ROUND_OFF, minimise};
