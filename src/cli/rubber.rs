@@ -29,6 +29,8 @@ Examples:
       --shift-factors shifts.txt --to tread.toml
   Moduli that grow with density times temperature:
     asperity rubber fit sweeps.csv --kind shear --vertical-shift rho-t --to tread.toml
+  Moduli that change with temperature in a way that is not known:
+    asperity rubber fit sweeps.csv --kind shear --vertical-shift free --to tread.toml
   Friction of that rubber at 40 °C:
     asperity solve bem --wave 0.0625:0.01867 --speed 10 --pressure 3.3 --rubber tread.toml --temperature-c 40
 
@@ -76,10 +78,12 @@ pub(super) struct Fit {
     #[arg(long, value_name = "C", value_parser = values::finite, allow_negative_numbers = true)]
     reference_temperature_c: Option<f64>,
     /// How moduli change with temperature beside the shift of the frequency: not at all, with density
-    /// times absolute temperature, or by a factor that is fitted for every temperature.
+    /// times absolute temperature, or by a factor that is fitted for every temperature. Fitted factors
+    /// are taken to lie between half and twice density times temperature at 100 K from the reference
+    /// (95 %), nearer at less; shift factors that the moduli then leave open are named.
     #[arg(long, value_enum, value_name = "HOW", default_value = "none")]
     vertical_shift: VerticalKind,
-    /// Volume expansion of the rubber in 1/K, for --vertical-shift rho-t [default: 6.6e-4].
+    /// Volume expansion of the rubber in 1/K, for --vertical-shift rho-t and free [default: 6.6e-4].
     #[arg(long, value_name = "PER_K", value_parser = values::finite, allow_negative_numbers = true)]
     expansion_per_k: Option<f64>,
     /// Shift factors to take as they are: a file with temperature_c and log10_shift or shift_factor.
@@ -118,6 +122,7 @@ pub(super) struct Fit {
 enum VerticalKind {
     None,
     RhoT,
+    Free,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -156,7 +161,7 @@ impl Fit {
         for warning in warnings(&fit) {
             note(quiet, format_args!("warning: {warning}"));
         }
-        let source = format!("asperity rubber fit to {}", file_name(&self.sweep));
+        let source = source(&self.sweep, &fit);
         let text = fit.rubber(&self.name(), self.poisson_ratio).to_toml(&source);
         let svg = self.plot.as_ref().map(|_| rubber_figure(&fit)).transpose();
         let svg = svg.map_err(CliError::failure)?;
@@ -185,14 +190,14 @@ impl Fit {
 
     fn options(&self) -> Result<FitOptions, CliError> {
         let shift_factors = self.shift_factors.as_deref().map(read_shift_factors).transpose();
+        let expansion_per_k = self.expansion_per_k.unwrap_or(VOLUME_EXPANSION_PER_K);
         Ok(FitOptions {
             terms: self.terms,
             reference_c: self.reference_temperature_c,
             vertical: match self.vertical_shift {
                 VerticalKind::None => VerticalChoice::None,
-                VerticalKind::RhoT => VerticalChoice::RhoT {
-                    expansion_per_k: self.expansion_per_k.unwrap_or(VOLUME_EXPANSION_PER_K),
-                },
+                VerticalKind::RhoT => VerticalChoice::RhoT { expansion_per_k },
+                VerticalKind::Free => VerticalChoice::Free { expansion_per_k },
             },
             shift_factors: shift_factors.map_err(CliError::input)?,
         })
@@ -219,9 +224,9 @@ impl Fit {
             )));
         }
         if let Some(expansion) = self.expansion_per_k {
-            if self.vertical_shift != VerticalKind::RhoT {
+            if self.vertical_shift == VerticalKind::None {
                 return Err(CliError::input(
-                    "--expansion-per-k is for --vertical-shift rho-t: leave it out, or give that",
+                    "--expansion-per-k is for --vertical-shift rho-t or free: leave it out, or give one of them",
                 ));
             }
             if !(0.0..=0.003).contains(&expansion) {
@@ -281,6 +286,21 @@ fn file_name(path: &Path) -> String {
     crate::files::name::text(path.file_name().unwrap_or(path.as_os_str()))
 }
 
+/// What the rubber file says of its source.
+fn source(sweep: &Path, fit: &MasterCurve) -> String {
+    let open: Vec<String> = fit
+        .shifts
+        .iter()
+        .filter(|shift| shift.uncertain)
+        .map(|shift| format!("{} °C", shift.temperature_c))
+        .collect();
+    let text = format!("asperity rubber fit to {}", file_name(sweep));
+    if open.is_empty() {
+        return text;
+    }
+    format!("{text}; shift factor not determined at {}, left out of the law", open.join(", "))
+}
+
 /// What a user should know before using the rubber.
 fn warnings(fit: &MasterCurve) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -310,10 +330,11 @@ fn warnings(fit: &MasterCurve) -> Vec<String> {
         ));
     }
     for shift in fit.shifts.iter().filter(|shift| shift.uncertain) {
+        let half = shift.confidence_95.map_or(String::new(), |half| format!(" ± {half:.1}"));
         warnings.push(format!(
-            "the shift factor at {} °C hardly shows: storage moduli change by less than 5 % from there to the next \
-             sweep and loss moduli are flat; it is left out of the law, and may be off by more than its interval",
-            shift.temperature_c
+            "the shift factor at {} °C is not determined by the moduli (log10 {:.1}{half}) and is left out of the \
+             law: measure over more frequencies, or give factors that you know with --shift-factors",
+            shift.temperature_c, shift.log10_shift
         ));
     }
     for [colder, hotter] in &fit.joined_by_loss_c {
@@ -331,7 +352,14 @@ fn warnings(fit: &MasterCurve) -> Vec<String> {
             100.0 * worst
         ));
     }
-    if fit.shifts.len() > 1 && fit.laws.is_empty() {
+    let open = fit.shifts.iter().filter(|shift| shift.uncertain).count();
+    if fit.shifts.len() > 1 && fit.laws.is_empty() && open + 1 == fit.shifts.len() {
+        warnings.push(
+            "no shift factor is determined: the rubber file has no [temperature] section; give \
+             --vertical-shift rho-t if moduli grow with density times temperature"
+                .into(),
+        );
+    } else if fit.shifts.len() > 1 && fit.laws.is_empty() {
         warnings.push(
             "the shift factors follow no law that gets softer with heat: the rubber file has no [temperature] \
              section"

@@ -90,7 +90,7 @@ impl<'a> Summary<'a> {
             None if Some(shift.temperature_c) == self.reference_c => "reference".into(),
             None => "given".into(),
         };
-        let half = if shift.uncertain { half + ", uncertain" } else { half };
+        let half = if shift.uncertain { half + ", not determined" } else { half };
         let vertical = shift.vertical.map_or(String::new(), |vertical| {
             let interval = vertical.confidence_95;
             let interval = interval.map(|[low, high]| format!(" ({low:.4} to {high:.4})"));

@@ -1,8 +1,9 @@
 //! The sweeps that are fitted together, with what is known of their shifts beforehand.
 
-use super::model::Series;
+use super::model::{FreeVerticals, Series};
 use super::result::LeftOut;
-use super::shift::first_shifts;
+use super::shift::{self, first_shifts};
+use super::verticals::{Start, WALK_PER_ROOT_K};
 use super::{FitError, FitOptions, GivenShift, SAME_TEMPERATURE_K, Sweep, VerticalChoice};
 use crate::rubber::VerticalShift;
 use std::f64::consts::LN_10;
@@ -20,8 +21,6 @@ pub(super) struct Chain {
     pub reference_c: Option<f64>,
     /// ln a of every sweep, where the fit starts or, if `given`, what it takes.
     pub ln_shifts: Vec<f64>,
-    /// ln b of every sweep, where the fit starts if they are free.
-    ln_verticals: Vec<f64>,
     /// Whether the shifts are not to be fitted.
     pub given: bool,
     /// Given factors about the reference, of a master curve that has no temperature itself.
@@ -33,10 +32,13 @@ pub(super) struct Chain {
     pub joined_by_loss_c: Vec<[f64; 2]>,
     /// Whether a sweep lies behind a pair whose shift hardly shows, seen from the reference.
     pub uncertain: Vec<bool>,
+    /// The colder sweep of each such pair.
+    loose: Vec<usize>,
 }
 
 impl Chain {
-    /// ln b of a sweep that follows from the choice; 0 if it is fitted.
+    /// ln b of a sweep that follows from the choice; where factors are fitted it is what they are
+    /// compared with.
     pub fn ln_known_vertical(&self, sweep: usize) -> f64 {
         let temperature_c = self.sweeps[sweep].temperature_c;
         let known = temperature_c.zip(self.reference_c).zip(known_vertical(self.vertical));
@@ -51,15 +53,96 @@ impl Chain {
             ln_equilibrium: 0.0,
             terms: Vec::new(),
             ln_shifts: self.ln_shifts.clone(),
-            ln_verticals: self.ln_verticals.clone(),
+            ln_verticals: vec![0.0; self.sweeps.len()],
         }
     }
+
+    /// The vertical factors, relative to the known ones, that the fit has to find.
+    pub fn free_verticals(&self) -> Option<FreeVerticals> {
+        let step =
+            |pair: &[Sweep]| WALK_PER_ROOT_K * (celsius(&pair[1]) - celsius(&pair[0])).sqrt();
+        matches!(self.vertical, VerticalChoice::Free { .. }).then(|| FreeVerticals {
+            free: (0..self.sweeps.len()).map(|k| k != self.reference).collect(),
+            steps: self.sweeps.windows(2).map(step).collect(),
+            noise: 0.0,
+        })
+    }
+
+    /// By what ln a of a sweep may be off beyond what the scatter says, where pairs between it and
+    /// the reference hardly show their shift: each of them may be anywhere from no shift to sweeps
+    /// that just touch.
+    pub fn slack(&self, sweep: usize, ln_shifts: &[f64]) -> f64 {
+        let [from, to] = [sweep.min(self.reference), sweep.max(self.reference)];
+        let of = |k: &usize| {
+            let place = ln_shifts[*k] - ln_shifts[k + 1];
+            place.abs().max((ln_length(&self.sweeps[*k]) - place).abs())
+        };
+        self.loose.iter().filter(|k| (from..to).contains(*k)).map(of).sum()
+    }
+
+    /// Where a fit of vertical factors starts: from the known ones, from none, from both ends of
+    /// what is likely, and from what tan δ, which no factor changes, says of the shifts.
+    pub fn starts(&self) -> Vec<Start> {
+        let sweeps = self.sweeps.len();
+        let mut starts =
+            vec![Start { ln_shifts: self.ln_shifts.clone(), ln_verticals: vec![0.0; sweeps] }];
+        if self.given {
+            return starts;
+        }
+        let known: Vec<f64> = (0..sweeps).map(|k| self.ln_known_vertical(k)).collect();
+        let divided_by = |ln: &[f64]| -> Vec<Sweep> {
+            self.sweeps.iter().zip(ln).map(|(sweep, ln)| divided(sweep, ln.exp())).collect()
+        };
+        let reference_c = celsius(&self.sweeps[self.reference]);
+        let difference = |k: usize| celsius(&self.sweeps[k]) - reference_c;
+        let span = (0..sweeps).map(|k| difference(k).abs()).fold(0.0, f64::max);
+        // Both ends of the prior's 95 % interval at the temperature that is furthest away.
+        let end = |sign: f64| {
+            let ln = move |k: usize| sign * 1.96 * WALK_PER_ROOT_K * difference(k) / span.sqrt();
+            (0..sweeps).map(ln).collect::<Vec<f64>>()
+        };
+        let none = known.iter().map(|ln| -ln).collect();
+        for ln_verticals in [none, end(1.0), end(-1.0)] {
+            let all: Vec<f64> = ln_verticals.iter().zip(&known).map(|(ln, at)| ln + at).collect();
+            let ln_shifts = shift::by_storage_from(&divided_by(&all), &self.ln_shifts);
+            starts.push(Start { ln_shifts, ln_verticals });
+        }
+        starts.push(shift::by_loss_factor_from(&divided_by(&known), &self.ln_shifts));
+        for start in &mut starts {
+            for values in [&mut start.ln_shifts, &mut start.ln_verticals] {
+                let at_reference = values[self.reference];
+                values.iter_mut().for_each(|value| *value -= at_reference);
+            }
+        }
+        starts
+    }
+}
+
+/// ln of the ratio of the highest and the lowest frequency.
+fn ln_length(sweep: &Sweep) -> f64 {
+    let last = sweep.points.last().map_or(1.0, |point| point.angular_frequency);
+    (last / sweep.points[0].angular_frequency).ln()
+}
+
+fn celsius(sweep: &Sweep) -> f64 {
+    sweep.temperature_c.unwrap_or(f64::NAN)
+}
+
+fn divided(sweep: &Sweep, factor: f64) -> Sweep {
+    let mut sweep = sweep.clone();
+    for point in &mut sweep.points {
+        point.storage_modulus /= factor;
+        point.loss_modulus /= factor;
+    }
+    sweep
 }
 
 fn known_vertical(vertical: VerticalChoice) -> Option<VerticalShift> {
     match vertical {
-        VerticalChoice::RhoT { expansion_per_k } => Some(VerticalShift::RhoT { expansion_per_k }),
-        VerticalChoice::None | VerticalChoice::Free => None,
+        VerticalChoice::RhoT { expansion_per_k } | VerticalChoice::Free { expansion_per_k } => {
+            Some(VerticalShift::RhoT { expansion_per_k })
+        }
+        VerticalChoice::None => None,
     }
 }
 
@@ -69,8 +152,7 @@ fn known_vertical(vertical: VerticalChoice) -> Option<VerticalShift> {
 /// [`FitError::Reference`]; [`FitError::NoOverlap`] if nothing is joined to the reference.
 pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, FitError> {
     let wanted = options.reference_c.map(|wanted| nearest(&sweeps, wanted)).transpose()?;
-    let free = options.vertical == VerticalChoice::Free;
-    let first = first_shifts(&reduced(&sweeps, options.vertical), free);
+    let first = first_shifts(&reduced(&sweeps, options.vertical));
     let groups = || first.groups.iter().cloned();
     let group = match wanted {
         Some(wanted) => groups().find(|group| group.contains(&wanted)),
@@ -83,10 +165,9 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
         return Err(no_overlap(&sweeps[colder], &sweeps[colder + 1]));
     }
     let reference = wanted.unwrap_or(group.start + (group.len() - 1) / 2);
-    let relative = |values: &[f64]| -> Vec<f64> {
-        values[group.clone()].iter().map(|value| value - values[reference]).collect()
-    };
-    let temperature = |k: usize| sweeps[k].temperature_c.unwrap_or(f64::NAN);
+    let relative = first.ln_shifts[group.clone()].iter();
+    let ln_shifts = relative.map(|ln| ln - first.ln_shifts[reference]).collect();
+    let temperature = |k: usize| celsius(&sweeps[k]);
     let between = |k: usize| if k < reference { k..reference } else { reference..k };
     let uncertain = |k: usize| first.uncertain.iter().any(|pair| between(k).contains(pair));
     let by_loss = first.by_loss.iter().filter(|k| group.contains(k));
@@ -94,8 +175,7 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
     Ok(Chain {
         reference: reference - group.start,
         reference_c: sweeps[reference].temperature_c,
-        ln_shifts: relative(&first.ln_shifts),
-        ln_verticals: relative(&first.ln_verticals),
+        ln_shifts,
         given: false,
         curve_factors: Vec::new(),
         vertical: options.vertical,
@@ -107,6 +187,12 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
             .collect(),
         joined_by_loss_c: by_loss.map(|k| [temperature(*k), temperature(k + 1)]).collect(),
         uncertain: group.clone().map(uncertain).collect(),
+        loose: first
+            .uncertain
+            .iter()
+            .filter(|k| group.contains(k) && group.contains(&(*k + 1)))
+            .map(|k| k - group.start)
+            .collect(),
         sweeps: sweeps[group].to_vec(),
     })
 }
@@ -130,13 +216,13 @@ pub(super) fn given(
         reference: 0,
         reference_c: None,
         ln_shifts: vec![0.0; sweeps.len()],
-        ln_verticals: vec![0.0; sweeps.len()],
         given: true,
         curve_factors: Vec::new(),
         vertical: options.vertical,
         left_out: Vec::new(),
         joined_by_loss_c: Vec::new(),
         uncertain: vec![false; sweeps.len()],
+        loose: Vec::new(),
         sweeps,
     };
     if let [Sweep { temperature_c: None, .. }] = chain.sweeps[..] {
@@ -194,15 +280,9 @@ fn nearest(sweeps: &[Sweep], wanted_c: f64) -> Result<usize, FitError> {
 /// them, before there is a reference.
 fn reduced(sweeps: &[Sweep], vertical: VerticalChoice) -> Vec<Sweep> {
     let Some(shift) = known_vertical(vertical) else { return sweeps.to_vec() };
-    let mut sweeps = sweeps.to_vec();
-    for sweep in &mut sweeps {
-        let factor = shift.ln_factor(sweep.temperature_c.unwrap_or_default(), 0.0).exp();
-        for point in &mut sweep.points {
-            point.storage_modulus /= factor;
-            point.loss_modulus /= factor;
-        }
-    }
-    sweeps
+    let factor =
+        |sweep: &Sweep| shift.ln_factor(sweep.temperature_c.unwrap_or_default(), 0.0).exp();
+    sweeps.iter().map(|sweep| divided(sweep, factor(sweep))).collect()
 }
 
 fn no_overlap(colder: &Sweep, hotter: &Sweep) -> FitError {

@@ -10,8 +10,9 @@ use nalgebra::{DMatrix, DVector};
 /// determine it.
 const LARGEST_C2_K: f64 = 1e5;
 
-/// Both laws through the factors that are certain, the better one first; without Arrhenius where none has a positive energy, without
-/// WLF for fewer than three factors or where they do not determine it.
+/// Both laws through the factors that are certain, the better one first; without Arrhenius where
+/// none has a positive energy, without WLF for fewer than three factors or where they do not
+/// determine it.
 ///
 /// The better one has the smaller residual variance, sum of squares over degrees of freedom. Every
 /// temperature weighs the same: that laws are no more than approximations is what they miss
@@ -53,29 +54,44 @@ fn arrhenius(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
     Some(FittedLaw { law, confidence_95: Some(vec![half_width]), residual_decades })
 }
 
-/// `ln b = m ln(T / T_r)` through the fitted vertical factors: a line through the reference.
-pub(super) fn fit_vertical(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedVertical> {
+/// `ln b = m ln(T / T_r)` through fitted vertical factors, given as temperature in °C and ln b with
+/// their covariance: a line through the reference by generalised least squares, since neighbours
+/// share most of their error. The interval is wider by the root of the mean square misfit, in
+/// standard deviations, where that is above 1, and by the largest difference of alternatives.
+pub(super) fn fit_vertical(
+    factors: &[(f64, f64)],
+    alternatives: &[Vec<(f64, f64)>],
+    covariance: &DMatrix<f64>,
+    reference_c: f64,
+) -> Option<FittedVertical> {
     let unit = VerticalShift::Power { exponent: 1.0 };
-    let points: Vec<[f64; 2]> = shifts
-        .iter()
-        .filter(|shift| shift.temperature_c != reference_c && !shift.uncertain)
-        .filter_map(|shift| {
-            let factor = shift.vertical?.factor;
-            Some([unit.ln_factor(shift.temperature_c, reference_c), factor.ln()])
-        })
-        .collect();
-    let squares: f64 = points.iter().map(|[x, _]| x * x).sum();
-    let exponent = points.iter().map(|[x, ln]| x * ln).sum::<f64>() / squares;
+    let x = DVector::from_iterator(
+        factors.len(),
+        factors.iter().map(|(temperature_c, _)| unit.ln_factor(*temperature_c, reference_c)),
+    );
+    let ln = |factors: &[(f64, f64)]| {
+        DVector::from_iterator(factors.len(), factors.iter().map(|(_, ln)| *ln))
+    };
+    let scale = covariance.diagonal().max();
+    let inverse = (covariance / scale).try_inverse()?;
+    let weight = x.dot(&(&inverse * &x));
+    let through = |ln: &DVector<f64>| x.dot(&(&inverse * ln)) / weight;
+    let exponent = through(&ln(factors));
+    let others = alternatives.iter().map(|other| (through(&ln(other)) - exponent).abs());
+    let spread = others.fold(0.0, f64::max);
+    let misses = ln(factors) - &x * exponent;
     if !exponent.is_finite() {
         return None;
     }
-    let misses: f64 = points.iter().map(|[x, ln]| (ln - exponent * x).powi(2)).sum();
-    let freedom = points.len() as f64 - 1.0;
-    let residual = (freedom > 0.0).then(|| (misses / freedom).sqrt());
+    let freedom = factors.len() as f64 - 1.0;
+    let confidence = || {
+        let squares = misses.dot(&(&inverse * &misses)) / scale / freedom;
+        (student_t_975(freedom) * (scale / weight * squares.max(1.0)).sqrt()).hypot(spread)
+    };
     Some(FittedVertical {
         law: VerticalShift::Power { exponent },
-        confidence_95: residual.map(|s| student_t_975(freedom) * s / squares.sqrt()),
-        residual,
+        confidence_95: (freedom > 0.0).then(confidence),
+        residual: (freedom > 0.0).then(|| (misses.norm_squared() / freedom).sqrt()),
     })
 }
 
@@ -178,6 +194,25 @@ mod tests {
             panic!("{:?}", laws[0])
         };
         approx::assert_relative_eq!(activation_energy_kj_mol, 120.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn vertical_factors_weigh_by_their_covariance() {
+        let power = VerticalShift::Power { exponent: 1.5 };
+        let factor = |celsius: f64| (celsius, power.ln_factor(celsius, 20.0));
+        let mut factors: Vec<_> = [-20.0, 0.0, 40.0, 60.0].map(factor).to_vec();
+        let mut covariance = DMatrix::identity(4, 4) * 1e-4;
+        let exponent = |factors: &[(f64, f64)], covariance: &DMatrix<f64>| {
+            let fitted = fit_vertical(factors, &[], covariance, 20.0).unwrap();
+            let VerticalShift::Power { exponent } = fitted.law else { panic!("{fitted:?}") };
+            exponent
+        };
+        approx::assert_relative_eq!(exponent(&factors, &covariance), 1.5, max_relative = 1e-12);
+        // One factor that is off and says so does no harm.
+        factors[3].1 += 1.0;
+        assert!((exponent(&factors, &covariance) - 1.5).abs() > 1.0);
+        covariance[(3, 3)] = 1e4;
+        assert!((exponent(&factors, &covariance) - 1.5).abs() < 1e-3);
     }
 
     #[test]

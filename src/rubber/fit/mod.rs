@@ -13,6 +13,7 @@
 //! factor b_T is 1 unless a choice says otherwise ([`VerticalChoice`]).
 
 mod chain;
+mod covariance;
 mod doubts;
 mod join;
 mod law;
@@ -23,11 +24,14 @@ mod shift;
 mod sweep;
 mod table;
 mod terms;
+mod verticals;
 
 #[cfg(test)]
 mod shift_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vertical_tests;
 
 pub use doubts::doubts;
 pub use result::{
@@ -42,6 +46,7 @@ pub use table::{
 
 use chain::Chain;
 use model::{Datum, Prony};
+use terms::Fitted;
 
 /// Decades by which relaxation times may lie outside the measured range.
 const MARGIN_DECADES: f64 = 1.0;
@@ -80,12 +85,19 @@ pub fn fit_sweeps(sweeps: &[Sweep], options: &FitOptions) -> Result<MasterCurve,
         None => chain::joined(sweeps, options)?,
     };
     let data = problem(&chain);
-    let choose = match data.free_verticals {
-        true => terms::choose_with_free_verticals,
-        false => terms::choose,
-    };
-    let (fitted, candidates) = choose(&data, options.terms, chain.start())?;
+    let (fitted, candidates) = fitted(&chain, &data, options)?;
     Ok(MasterCurve::new(&chain, &fitted, candidates))
+}
+
+fn fitted(
+    chain: &Chain,
+    data: &Prony,
+    options: &FitOptions,
+) -> Result<(Fitted, Vec<Candidate>), FitError> {
+    if matches!(chain.vertical, VerticalChoice::Free { .. }) {
+        return verticals::choose(data, options.terms, &chain.starts());
+    }
+    terms::choose(data, options.terms, chain.start())
 }
 
 fn problem(chain: &Chain) -> Prony {
@@ -112,6 +124,6 @@ fn problem(chain: &Chain) -> Prony {
         reference: *reference,
         limits,
         given_shifts: chain.given.then(|| ln_shifts.clone()),
-        free_verticals: chain.vertical == VerticalChoice::Free,
+        verticals: chain.free_verticals(),
     }
 }

@@ -7,8 +7,10 @@
 //! ```
 //!
 //! with the shift factor a and the vertical factor b of the temperature, both 1 at the reference.
-//! The parameters are `ln E_inf, ln E_i, u_i, ln a_k, ln b_k`, the last two where they are free: moduli cannot become negative, and
-//! `ln τ_i = centre + half sin(u_i / half)` keeps a time within its limits (as in MINUIT).
+//! The parameters are `ln E_inf, ln E_i, u_i, ln a_k, ln b_k`, the last two where they are free:
+//! moduli cannot become negative, and `ln τ_i = centre + half sin(u_i / half)` keeps a time within
+//! its limits (as in MINUIT). Free vertical factors add a residual for each pair of neighbours, see
+//! [`FreeVerticals`].
 
 use super::least_squares::LeastSquares;
 use nalgebra::{DMatrix, DVector};
@@ -38,8 +40,41 @@ pub(super) struct Prony {
     pub limits: [f64; 2],
     /// ln a of every sweep where shift factors are given; they are fitted otherwise.
     pub given_shifts: Option<Vec<f64>>,
-    /// Whether the vertical factors are fitted; they are 1 otherwise.
-    pub free_verticals: bool,
+    /// The vertical factors that are fitted; all are 1 otherwise.
+    pub verticals: Option<FreeVerticals>,
+}
+
+/// Vertical factors that are fitted, and what is known of them beforehand: from one sweep to the
+/// next ln b changes by a normal deviate about 0. As a residual with the standard deviation of all
+/// others that is
+///
+/// ```text
+/// r = noise (ln b_{k+1} - ln b_k) / step_k
+/// ```
+#[derive(Debug, Clone)]
+pub(super) struct FreeVerticals {
+    /// Whether ln b of each sweep is fitted; it is 0 otherwise.
+    pub free: Vec<bool>,
+    /// Standard deviation of the change of ln b from each sweep to the next.
+    pub steps: Vec<f64>,
+    /// Standard deviation of the residuals of moduli.
+    pub noise: f64,
+}
+
+impl FreeVerticals {
+    /// The colder sweep of every pair that has a residual, with the factor `noise / step`.
+    fn pairs(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let step = |(k, step): (usize, &f64)| {
+            (self.free[k] || self.free[k + 1]).then_some((k, self.noise / step))
+        };
+        self.steps.iter().enumerate().filter_map(step)
+    }
+
+    /// Sum of squares of the changes from sweep to sweep, each in standard deviations.
+    pub fn improbability(&self, series: &Series) -> f64 {
+        let changes = series.ln_verticals.windows(2).zip(&self.steps);
+        changes.map(|(ln, step)| ((ln[1] - ln[0]) / step).powi(2)).sum()
+    }
 }
 
 /// A Prony series in logarithms, with the shift factors of the sweeps.
@@ -65,10 +100,18 @@ impl Prony {
 
     /// Number of parameters.
     pub fn parameters(&self) -> usize {
-        let others = self.sweeps - 1;
-        let shifts = if self.given_shifts.is_some() { 0 } else { others };
-        let verticals = if self.free_verticals { others } else { 0 };
-        1 + 2 * self.terms + shifts + verticals
+        let shifts = if self.given_shifts.is_some() { 0 } else { self.sweeps - 1 };
+        let free = |verticals: &FreeVerticals| verticals.free.iter().filter(|free| **free).count();
+        1 + 2 * self.terms + shifts + self.verticals.as_ref().map_or(0, free)
+    }
+
+    /// Number of residuals.
+    pub fn rows(&self) -> usize {
+        2 * self.data.len() + self.vertical_pairs().count()
+    }
+
+    fn vertical_pairs(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.verticals.iter().flat_map(FreeVerticals::pairs)
     }
 
     pub fn pack(&self, series: &Series) -> DVector<f64> {
@@ -110,11 +153,12 @@ impl Prony {
         free.then(|| self.index(1 + 2 * self.terms, sweep)).flatten()
     }
 
-    /// The place of the vertical factor of a sweep among the parameters, likewise.
+    /// The place of the vertical factor of a sweep among the parameters, if it is free.
     pub fn vertical_index(&self, sweep: usize) -> Option<usize> {
         let shifts = if self.given_shifts.is_some() { 0 } else { self.sweeps - 1 };
-        let start = 1 + 2 * self.terms + shifts;
-        self.free_verticals.then(|| self.index(start, sweep)).flatten()
+        let free = &self.verticals.as_ref()?.free;
+        let before = free[..sweep].iter().filter(|free| **free).count();
+        free[sweep].then_some(1 + 2 * self.terms + shifts + before)
     }
 
     fn index(&self, start: usize, sweep: usize) -> Option<usize> {
@@ -142,7 +186,7 @@ impl Prony {
     /// Derivatives of the residuals by `ln E_inf, ln E_i, ln τ_i, ln a_k, ln b_k`.
     pub fn logarithmic_jacobian(&self, series: &Series) -> DMatrix<f64> {
         let n = self.terms;
-        let mut jacobian = DMatrix::zeros(2 * self.data.len(), self.parameters());
+        let mut jacobian = DMatrix::zeros(self.rows(), self.parameters());
         for (j, datum) in self.data.iter().enumerate() {
             // Without the vertical factor, which the quotients below do not contain.
             let [storage, loss] = series.moduli_at_reference(datum);
@@ -165,6 +209,13 @@ impl Prony {
                     if let Some(column) = self.shift_index(datum.sweep) {
                         jacobian[(row, column)] += value;
                     }
+                }
+            }
+        }
+        for (row, (k, factor)) in self.vertical_pairs().enumerate() {
+            for (sweep, sign) in [(k, -1.0), (k + 1, 1.0)] {
+                if let Some(column) = self.vertical_index(sweep) {
+                    jacobian[(2 * self.data.len() + row, column)] = sign * factor;
                 }
             }
         }
@@ -193,7 +244,9 @@ impl Prony {
             let [storage, loss] = series.moduli(datum);
             [storage.ln() - datum.ln_storage, loss.ln() - datum.ln_loss]
         });
-        DVector::from_iterator(2 * self.data.len(), residuals)
+        let ln = &series.ln_verticals;
+        let priors = self.vertical_pairs().map(|(k, factor)| factor * (ln[k + 1] - ln[k]));
+        DVector::from_iterator(self.rows(), residuals.chain(priors))
     }
 }
 

@@ -1,17 +1,20 @@
 //! What a fit gives: a rubber with intervals, its misfit, shift factors and their law.
 
 use super::chain::Chain;
+use super::covariance::Covariance;
 use super::law::{fit_laws, fit_vertical};
 use super::model::{Prony, Series};
 use super::terms::Fitted;
 use super::{Sweep, SweepPoint, VerticalChoice};
-use crate::numerics::statistics::student_t_975;
 use crate::rubber::{
     FrequencyRange, MaxwellBranch, Rubber, RubberData, ShiftLaw, TemperatureDependence,
     VerticalShift,
 };
 use serde::Serialize;
 use std::f64::consts::{LN_10, TAU};
+
+/// Half width of an interval beyond which a shift factor counts as not determined.
+const WIDEST_DECADES: f64 = 0.3;
 
 /// A positive quantity with its 95 % confidence interval.
 ///
@@ -44,7 +47,8 @@ pub struct ShiftFactor {
     /// Half width of its 95 % confidence interval in decades; `None` at the reference and where it
     /// was given.
     pub confidence_95: Option<f64>,
-    /// Whether it hardly shows in the moduli, beyond what the interval says: it is no part of a law.
+    /// Whether the moduli do not determine it: its interval is wider than 0.3 decades on either side,
+    /// or storage moduli change by little more than they scatter. It is no part of a law.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub uncertain: bool,
     /// The factor of the moduli, if there is a vertical shift.
@@ -170,25 +174,25 @@ impl MasterCurve {
     pub(super) fn new(chain: &Chain, fitted: &Fitted, candidates: Vec<Candidate>) -> Self {
         let Fitted { problem, series, .. } = fitted;
         let Chain { reference_c, .. } = *chain;
-        let half_widths = half_widths(problem, series, fitted.rms);
+        let covariance = Covariance::new(fitted);
         let estimate = |column: usize, logarithm: f64| Estimate {
             value: logarithm.exp(),
-            confidence_95: half_widths[column]
+            confidence_95: covariance
+                .half_width(column)
                 .map(|half| [(logarithm - half).exp(), (logarithm + half).exp()]),
         };
         let term = |(i, term): (usize, &[f64; 2])| FittedTerm {
             modulus: estimate(1 + i, term[0]),
             relaxation_time: estimate(1 + problem.terms + i, term[1]),
         };
-        let shifts = shift_factors(chain, problem, series, &half_widths);
+        let shifts = shift_factors(chain, fitted, &covariance);
         let points = reduced(chain, series);
         let frequencies = || points.iter().map(|reduced| reduced.point.angular_frequency / TAU);
         Self {
             equilibrium_modulus: estimate(0, series.ln_equilibrium),
             terms: series.terms.iter().enumerate().map(term).collect(),
             laws: reference_c.map_or(Vec::new(), |reference| fit_laws(&shifts, reference)),
-            vertical: reference_c
-                .and_then(|reference| vertical(chain.vertical, &shifts, reference)),
+            vertical: vertical(chain, fitted, &covariance),
             reference_c,
             shifts,
             left_out: chain.left_out.clone(),
@@ -228,29 +232,10 @@ impl MasterCurve {
     }
 }
 
-/// Half widths of the 95 % intervals of the parameters in their logarithms.
-fn half_widths(problem: &Prony, series: &Series, rms: f64) -> Vec<Option<f64>> {
-    let free = problem.free_columns(series);
-    let jacobian = problem.logarithmic_jacobian(series).select_columns(&free);
-    let n = jacobian.nrows() as f64;
-    let freedom = n - free.len() as f64;
-    let spread = student_t_975(freedom) * rms * (n / freedom).sqrt();
-    let svd = jacobian.svd(false, true);
-    let mut half_widths = vec![None; problem.parameters()];
-    if let Some(directions) = &svd.v_t {
-        for (k, column) in free.into_iter().enumerate() {
-            let growth = directions.column(k).component_div(&svd.singular_values).norm();
-            half_widths[column] = Some(spread * growth);
-        }
-    }
-    half_widths
-}
-
 fn shift_factors(
     chain: &Chain,
-    problem: &Prony,
-    series: &Series,
-    half_widths: &[Option<f64>],
+    Fitted { problem, series, alternatives, .. }: &Fitted,
+    covariance: &Covariance,
 ) -> Vec<ShiftFactor> {
     if chain.sweeps.len() < 2 {
         let given = chain.curve_factors.iter().map(|given| ShiftFactor {
@@ -262,25 +247,34 @@ fn shift_factors(
         });
         return given.collect();
     }
-    let half_width = |column: Option<usize>| column.and_then(|column| half_widths[column]);
+    let half_width = |column: Option<usize>, k: usize, of: fn(&Series) -> &[f64]| {
+        let spread = |other: &Series| (of(other)[k] - of(series)[k]).abs();
+        let spread = alternatives.iter().map(spread).fold(0.0, f64::max);
+        column.and_then(|column| covariance.half_width(column)).map(|half| half.hypot(spread))
+    };
     let vertical = |k: usize| match chain.vertical {
         VerticalChoice::None => None,
         VerticalChoice::RhoT { .. } => {
             Some(VerticalFactor { factor: chain.ln_known_vertical(k).exp(), confidence_95: None })
         }
-        VerticalChoice::Free => {
-            let ln = series.ln_verticals[k];
+        VerticalChoice::Free { .. } => {
+            let ln = chain.ln_known_vertical(k) + series.ln_verticals[k];
             let interval = |half: f64| [(ln - half).exp(), (ln + half).exp()];
-            let confidence_95 = half_width(problem.vertical_index(k)).map(interval);
+            let confidence_95 =
+                half_width(problem.vertical_index(k), k, |series| &series.ln_verticals)
+                    .map(interval);
             Some(VerticalFactor { factor: ln.exp(), confidence_95 })
         }
     };
     let factor = |(k, sweep): (usize, &Sweep)| {
+        let half = half_width(problem.shift_index(k), k, |series| &series.ln_shifts);
+        let confidence_95 = half.map(|half| (half + chain.slack(k, &series.ln_shifts)) / LN_10);
+        let wide = confidence_95.is_some_and(|half| half > WIDEST_DECADES);
         sweep.temperature_c.map(|temperature_c| ShiftFactor {
             temperature_c,
             log10_shift: series.ln_shifts[k] / LN_10,
-            confidence_95: half_width(problem.shift_index(k)).map(|half| half / LN_10),
-            uncertain: chain.uncertain[k],
+            confidence_95,
+            uncertain: chain.uncertain[k] || wide,
             vertical: vertical(k),
         })
     };
@@ -288,18 +282,27 @@ fn shift_factors(
 }
 
 /// The vertical shift of the rubber file.
-fn vertical(
-    choice: VerticalChoice,
-    shifts: &[ShiftFactor],
-    reference_c: f64,
-) -> Option<FittedVertical> {
-    match choice {
+fn vertical(chain: &Chain, fitted: &Fitted, covariance: &Covariance) -> Option<FittedVertical> {
+    match chain.vertical {
         VerticalChoice::None => None,
         VerticalChoice::RhoT { expansion_per_k } => {
             let law = VerticalShift::RhoT { expansion_per_k };
             Some(FittedVertical { law, confidence_95: None, residual: None })
         }
-        VerticalChoice::Free => fit_vertical(shifts, reference_c),
+        VerticalChoice::Free { .. } => {
+            let Fitted { problem, series, alternatives, .. } = fitted;
+            let free = || (0..chain.sweeps.len()).filter(|k| problem.vertical_index(*k).is_some());
+            let columns: Vec<usize> = free().filter_map(|k| problem.vertical_index(k)).collect();
+            let factor = |k: usize, series: &Series| {
+                let ln = chain.ln_known_vertical(k) + series.ln_verticals[k];
+                Some((chain.sweeps[k].temperature_c?, ln))
+            };
+            let factors = |series: &Series| -> Vec<(f64, f64)> {
+                free().filter_map(|k| factor(k, series)).collect()
+            };
+            let others: Vec<_> = alternatives.iter().map(factors).collect();
+            fit_vertical(&factors(series), &others, &covariance.of(&columns)?, chain.reference_c?)
+        }
     }
 }
 

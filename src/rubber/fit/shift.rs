@@ -8,16 +8,16 @@
 //! ln a_B - ln a_A = integral (ln ω_A(E') - ln ω_B(E')) d ln E' / (ln E'_high - ln E'_low)
 //! ```
 //!
-//! Neighbours without common storage moduli are joined by E'' and tan δ ([`join`](super::join)),
-//! those with free vertical factors by tan δ from the first.
+//! Neighbours without common storage moduli are joined by E'' and tan δ ([`join`](super::join)).
 
 use super::join::{best_place, ln_loss, ln_loss_factor, mean_difference};
+use super::verticals::Start;
 use super::{Sweep, SweepPoint};
 use std::ops::Range;
 
 /// Points of each of two sweeps that must lie in the moduli of the other.
 const LEAST_COMMON_POINTS: usize = 2;
-/// Change of ln E' over two sweeps that tells their shift: samples of one rubber differ by some
+/// Change of ln E' over a sweep that tells their shift: samples of one rubber differ by some
 /// per cent from clamping to clamping.
 const LEAST_CHANGE: f64 = 0.05;
 
@@ -29,8 +29,6 @@ const AGREEMENT: f64 = 0.1 * std::f64::consts::LN_10;
 pub(super) struct FirstShifts {
     /// ln a of every sweep relative to the first one of its group.
     pub ln_shifts: Vec<f64>,
-    /// ln b of every sweep, relative like these; 0 unless vertical factors are free.
-    pub ln_verticals: Vec<f64>,
     /// The sweeps that hang together, in order.
     pub groups: Vec<Range<usize>>,
     /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
@@ -43,26 +41,23 @@ pub(super) struct FirstShifts {
 /// Where the hotter of two neighbours belongs.
 struct Pair {
     ln_shift: f64,
-    ln_vertical: f64,
     by_loss: bool,
     uncertain: bool,
 }
 
 /// Joins neighbours, and begins a new group where nothing joins them.
-pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts {
+pub(super) fn first_shifts(sweeps: &[Sweep]) -> FirstShifts {
     let mut first = FirstShifts {
         ln_shifts: vec![0.0],
-        ln_verticals: vec![0.0],
         groups: Vec::new(),
         by_loss: Vec::new(),
         uncertain: Vec::new(),
     };
     let mut start = 0;
     for (k, pair) in sweeps.windows(2).enumerate() {
-        match joined(&pair[0], &pair[1], free_vertical) {
+        match joined(&pair[0], &pair[1]) {
             Some(pair) => {
                 first.ln_shifts.push(first.ln_shifts[k] + pair.ln_shift);
-                first.ln_verticals.push(first.ln_verticals[k] + pair.ln_vertical);
                 first.by_loss.extend(pair.by_loss.then_some(k));
                 first.uncertain.extend(pair.uncertain.then_some(k));
             }
@@ -70,7 +65,6 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
                 first.groups.push(start..k + 1);
                 start = k + 1;
                 first.ln_shifts.push(0.0);
-                first.ln_verticals.push(0.0);
             }
         }
     }
@@ -78,31 +72,46 @@ pub(super) fn first_shifts(sweeps: &[Sweep], free_vertical: bool) -> FirstShifts
     first
 }
 
-fn joined(colder: &Sweep, hotter: &Sweep, free_vertical: bool) -> Option<Pair> {
+fn joined(colder: &Sweep, hotter: &Sweep) -> Option<Pair> {
     let by_loss = || best_place(colder, hotter, &[ln_loss, ln_loss_factor]);
     let plain = |ln_shift: f64| {
         let confirmed = || by_loss().is_some_and(|loss: f64| (loss - ln_shift).abs() < AGREEMENT);
-        let uncertain = change(colder, hotter) < LEAST_CHANGE && !confirmed();
-        Pair { ln_shift, ln_vertical: 0.0, by_loss: false, uncertain }
+        let uncertain = change(colder).max(change(hotter)) < LEAST_CHANGE && !confirmed();
+        Pair { ln_shift, by_loss: false, uncertain }
     };
-    if free_vertical {
-        let Some(ln_shift) = best_place(colder, hotter, &[ln_loss_factor]) else {
-            // Along a power law of the moduli a vertical factor is as good as a shift.
-            return by_storage(colder, hotter)
-                .map(|ln_shift| Pair { uncertain: true, ..plain(ln_shift) });
-        };
-        let ln_storage = |point: &SweepPoint| point.storage_modulus.ln();
-        let ln_vertical = mean_difference(colder, hotter, ln_shift, ln_storage)?;
-        return Some(Pair { ln_shift, ln_vertical, by_loss: false, uncertain: false });
-    }
-    by_storage(colder, hotter).map(plain).or_else(|| {
-        Some(Pair { ln_shift: by_loss()?, ln_vertical: 0.0, by_loss: true, uncertain: false })
-    })
+    by_storage(colder, hotter)
+        .map(plain)
+        .or_else(|| Some(Pair { ln_shift: by_loss()?, by_loss: true, uncertain: false }))
 }
 
-/// By what ln E' changes over both sweeps.
-fn change(colder: &Sweep, hotter: &Sweep) -> f64 {
-    let moduli = || colder.points.iter().chain(&hotter.points).map(|point| point.storage_modulus);
+/// ln a of every sweep by E' as it is, by given ones where neighbours have too few common moduli.
+pub(super) fn by_storage_from(sweeps: &[Sweep], ln_shifts: &[f64]) -> Vec<f64> {
+    let mut ln = vec![0.0];
+    for (k, pair) in sweeps.windows(2).enumerate() {
+        let given = ln_shifts[k + 1] - ln_shifts[k];
+        ln.push(ln[k] + by_storage(&pair[0], &pair[1]).unwrap_or(given));
+    }
+    ln
+}
+
+/// ln a of every sweep by tan δ and ln b by the storage moduli that then differ; the given shift and
+/// no factor where tan δ does not join neighbours.
+pub(super) fn by_loss_factor_from(sweeps: &[Sweep], ln_shifts: &[f64]) -> Start {
+    let ln_storage = |point: &SweepPoint| point.storage_modulus.ln();
+    let mut start = Start { ln_shifts: vec![0.0], ln_verticals: vec![0.0] };
+    for (k, pair) in sweeps.windows(2).enumerate() {
+        let joined = best_place(&pair[0], &pair[1], &[ln_loss_factor])
+            .and_then(|ln| Some([ln, mean_difference(&pair[0], &pair[1], ln, ln_storage)?]));
+        let [shift, vertical] = joined.unwrap_or([ln_shifts[k + 1] - ln_shifts[k], 0.0]);
+        start.ln_shifts.push(start.ln_shifts[k] + shift);
+        start.ln_verticals.push(start.ln_verticals[k] + vertical);
+    }
+    start
+}
+
+/// By what ln E' changes over a sweep.
+fn change(sweep: &Sweep) -> f64 {
+    let moduli = || sweep.points.iter().map(|point| point.storage_modulus);
     (moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)).ln()
 }
 
@@ -164,7 +173,7 @@ mod tests {
     #[test]
     fn the_shift_of_straight_lines_is_exact() {
         let sweeps = [sweep(0.0, 50.0, -4..9), sweep(20.0, 1.0, -4..9), sweep(40.0, 0.1, -4..9)];
-        let first = first_shifts(&sweeps, false);
+        let first = first_shifts(&sweeps);
         let expected = [0.0, -50_f64.ln(), (0.1_f64 / 50.0).ln()];
         for (shift, expected) in first.ln_shifts.iter().zip(expected) {
             approx::assert_abs_diff_eq!(*shift, expected, epsilon = 1e-12);
@@ -174,7 +183,7 @@ mod tests {
     #[test]
     fn sweeps_apart_are_groups() {
         let sweeps = [sweep(0.0, 1e4, 0..9), sweep(20.0, 1.0, 0..9), sweep(40.0, 0.5, 0..9)];
-        let first = first_shifts(&sweeps, false);
+        let first = first_shifts(&sweeps);
         assert_eq!(first.groups, [0..1, 1..3]);
         approx::assert_relative_eq!(first.ln_shifts[2], 0.5_f64.ln(), max_relative = 1e-9);
     }

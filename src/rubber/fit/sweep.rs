@@ -54,8 +54,12 @@ pub enum VerticalChoice {
         /// Volume expansion in 1/K.
         expansion_per_k: f64,
     },
-    /// A factor is fitted for every temperature.
-    Free,
+    /// A factor is fitted for every temperature; those that the moduli do not determine are near
+    /// density times absolute temperature.
+    Free {
+        /// Volume expansion in 1/K.
+        expansion_per_k: f64,
+    },
 }
 
 /// A shift factor that is known from elsewhere.

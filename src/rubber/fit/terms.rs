@@ -30,11 +30,6 @@ const TRIALS_PER_DECADE: f64 = 4.0;
 const UPDATES: usize = 100;
 /// A contribution to both moduli that is nowhere larger, relative, is none.
 const VANISHING: f64 = 1e-6;
-/// Change of ln a from that by tan δ, which no vertical factor touches, beyond which free factors
-/// have gone astray: a quarter of a decade, ten steps of the search for the latter.
-const FURTHEST_MOVE: f64 = 0.25 * std::f64::consts::LN_10;
-/// Rounds of terms and factors; three are usual.
-const MOST_ROUNDS: usize = 10;
 /// Beyond this condition number of the Jacobian the singular values are round-off.
 const SINGULAR: f64 = 1e12;
 
@@ -44,18 +39,46 @@ pub(super) struct Fitted {
     pub problem: Prony,
     pub series: Series,
     pub rms: f64,
+    /// Other numbers of terms that the data do not tell from this one, of free vertical factors.
+    pub alternatives: Vec<Series>,
 }
 
-/// Fits numbers of terms one after the other from the shifts of a series without terms, up to the wanted one or until the criterion has its
-/// minimum.
+impl Fitted {
+    /// Degrees of freedom: residuals less the parameters that they determine.
+    pub fn freedom(&self) -> f64 {
+        (self.problem.rows() - self.problem.free_columns(&self.series).len()) as f64
+    }
+
+    /// Standard deviation of the residuals.
+    pub fn noise(&self) -> f64 {
+        self.rms * (self.problem.rows() as f64 / self.freedom()).sqrt()
+    }
+}
+
+/// Fits numbers of terms one after the other from the shifts of a series without terms, up to the
+/// wanted one or until the criterion has its minimum.
 ///
 /// # Errors
 /// [`FitError::TooFewPoints`], [`FitError::NoFit`].
 pub(super) fn choose(
     data: &Prony,
     wanted: Option<usize>,
-    mut previous: Series,
+    previous: Series,
 ) -> Result<(Fitted, Vec<Candidate>), FitError> {
+    let (fitted, candidates, _) = choose_of_all(data, wanted, previous)?;
+    Ok((fitted, candidates))
+}
+
+/// [`choose`], with the fits of all numbers of terms that were tried and may be used.
+///
+/// # Errors
+/// As [`choose`].
+pub(super) fn choose_of_all(
+    data: &Prony,
+    wanted: Option<usize>,
+    mut previous: Series,
+) -> Result<(Fitted, Vec<Candidate>, Vec<Fitted>), FitError> {
+    let mut all = Vec::new();
     let most = most_terms(data, &previous.ln_shifts);
     if most == 0 || wanted.is_some_and(|wanted| wanted > most_determined(data)) {
         let needed = (2 * wanted.unwrap_or(1) + without_terms(data) + 2).div_ceil(2);
@@ -69,6 +92,7 @@ pub(super) fn choose(
         let found = best_minimum(&problem, &previous);
         let (candidate, fitted) = judge(problem, found, &mut previous);
         since_best += 1;
+        all.extend(fitted.clone());
         if let (Some(fitted), Some(criterion)) = (fitted, candidate.bic) {
             let asked = wanted == Some(terms);
             if asked
@@ -86,72 +110,12 @@ pub(super) fn choose(
         }
     }
     match best {
-        Some((_, fitted)) => Ok((fitted, candidates)),
+        Some((_, fitted)) => Ok((fitted, candidates, all)),
         None => {
             let last = candidates.iter().rev().find_map(|candidate| candidate.rejected);
             Err(FitError::NoFit { terms: wanted, reason: last.unwrap_or("it did not converge") })
         }
     }
-}
-
-/// [`choose`] where vertical factors are free: few terms move whole sweeps away from the others and
-/// never find back, so the number of terms is chosen with all factors held, then all are freed from
-/// there, until the number stays.
-///
-/// # Errors
-/// As [`choose`].
-pub(super) fn choose_with_free_verticals(
-    data: &Prony,
-    wanted: Option<usize>,
-    mut start: Series,
-) -> Result<(Fitted, Vec<Candidate>), FitError> {
-    let mut terms = 0;
-    let by_loss_factor = start.ln_shifts.clone();
-    for _ in 0..MOST_ROUNDS {
-        let held = with_factors_held(data, &start);
-        let without_terms =
-            Series { ln_verticals: vec![0.0; data.sweeps], terms: Vec::new(), ..start.clone() };
-        let (chosen, candidates) = choose(&held, wanted, without_terms)?;
-        let problem = Prony { terms: chosen.problem.terms, ..data.clone() };
-        let mut freed = Series {
-            ln_shifts: start.ln_shifts.clone(),
-            ln_verticals: start.ln_verticals.clone(),
-            ..chosen.series
-        };
-        let found = minimise(&problem, problem.pack(&freed));
-        let (candidate, fitted) = judge(problem, found, &mut freed);
-        let (count, unchanged) = (candidate.terms, candidate.terms == terms);
-        let moved = freed.ln_shifts.iter().zip(&by_loss_factor).map(|(a, b)| (a - b).abs());
-        if moved.fold(0.0, f64::max) > FURTHEST_MOVE {
-            let reason = "the moduli follow a power law over some sweeps, along which a vertical factor is as good as a \
-                          shift; give --vertical-shift rho-t, or measure over more frequencies";
-            return Err(FitError::NoFit { terms: wanted, reason });
-        }
-        if let (Some(fitted), true) = (fitted, unchanged || wanted.is_some()) {
-            return Ok((fitted, candidates));
-        }
-        if unchanged {
-            let reason = candidate.rejected.unwrap_or("it did not converge");
-            return Err(FitError::NoFit { terms: wanted, reason });
-        }
-        (terms, start) = (count, freed);
-    }
-    let reason = "with free vertical factors the number of terms does not settle";
-    Err(FitError::NoFit { terms: wanted, reason })
-}
-
-/// The problem with the shifts and vertical factors of a series taken as they are.
-fn with_factors_held(data: &Prony, series: &Series) -> Prony {
-    let mut held = Prony {
-        given_shifts: Some(series.ln_shifts.clone()),
-        free_verticals: false,
-        ..data.clone()
-    };
-    for datum in &mut held.data {
-        datum.ln_storage -= series.ln_verticals[datum.sweep];
-        datum.ln_loss -= series.ln_verticals[datum.sweep];
-    }
-    held
 }
 
 /// As many as leave a degree of freedom beside the variance.
@@ -185,7 +149,7 @@ fn best_minimum(problem: &Prony, previous: &Series) -> Option<Minimum> {
 }
 
 /// What a number of terms is worth; the next one starts from `previous`.
-fn judge(
+pub(super) fn judge(
     problem: Prony,
     found: Option<Minimum>,
     previous: &mut Series,
@@ -203,7 +167,7 @@ fn judge(
     let parameters = problem.parameters() as f64 + 1.0;
     let bic = n * minimum.rms.max(ROUND_OFF).powi(2).ln() + parameters * n.ln();
     let candidate = Candidate { terms, rms_misfit: Some(minimum.rms), bic: Some(bic), rejected };
-    let fitted = Fitted { problem, series, rms: minimum.rms };
+    let fitted = Fitted { problem, series, rms: minimum.rms, alternatives: Vec::new() };
     (candidate, rejected.is_none().then_some(fitted))
 }
 

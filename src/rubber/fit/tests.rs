@@ -208,14 +208,15 @@ fn the_jacobian_is_that_of_differences() {
     let data = sweeps(&broad(), law, 0.02, 0);
     let options = FitOptions {
         reference_c: Some(20.0),
-        vertical: VerticalChoice::Free,
+        vertical: VerticalChoice::Free { expansion_per_k: 6.6e-4 },
         ..FitOptions::default()
     };
     let chain = chain::joined(data, &options).unwrap();
-    let problem = model::Prony { terms: 2, ..problem(&chain) };
+    let mut problem = model::Prony { terms: 2, ..problem(&chain) };
+    problem.verticals.as_mut().unwrap().noise = 0.02;
     assert_eq!(problem.parameters(), 1 + 2 * 2 + 2 * 6);
     let terms = vec![[16.0, 0.5], [18.0, -LN_10]];
-    let ln_verticals = vec![0.1; 7];
+    let ln_verticals = vec![0.1, 0.2, 0.05, -0.1, 0.0, -0.3, 0.1];
     let series = model::Series { ln_equilibrium: 15.0, terms, ln_verticals, ..chain.start() };
     let at = problem.pack(&series);
     use least_squares::LeastSquares;
