@@ -35,13 +35,57 @@ pub fn gmres(
     limits: KrylovLimits,
     interrupt: &Interrupt,
 ) -> KrylovReport {
-    let n = residual.len();
-    let norm = euclidean_norm(residual);
-    if norm <= limits.tolerance || n == 0 {
-        residual.fill(0.0);
-        return KrylovReport { iterations: 0, residual_norm: norm };
+    let apply = |v: &[f64]| {
+        let mut w = vec![0.0; v.len()];
+        operator(v, &mut w);
+        w
+    };
+    let (report, y, basis) = arnoldi(apply, residual, limits, interrupt);
+    residual.fill(0.0);
+    for (v, y) in basis.iter().zip(&y) {
+        axpy(*y, v, residual);
     }
-    let mut basis: Vec<Vec<f64>> = vec![residual.iter().map(|r| r / norm).collect()];
+    report
+}
+
+/// Solves `A x = b` from zero with a preconditioner on the right: minimises `|b - A Z y|` over the
+/// preconditioned Krylov basis Z and returns `x = Z y` (flexible GMRES without restart; Saad 1993,
+/// doi:10.1137/0914028). The residual that is watched is that of the equations themselves, whatever the
+/// preconditioner is. After an `interrupt` the best solution so far is returned.
+pub fn flexible_gmres(
+    mut operator: impl FnMut(&[f64]) -> Vec<f64>,
+    mut precondition: impl FnMut(&[f64]) -> Vec<f64>,
+    right: &[f64],
+    limits: KrylovLimits,
+    interrupt: &Interrupt,
+) -> (Vec<f64>, KrylovReport) {
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    let apply = |v: &[f64]| {
+        directions.push(precondition(v));
+        operator(&directions[directions.len() - 1])
+    };
+    let (report, y, _) = arnoldi(apply, right, limits, interrupt);
+    let mut x = vec![0.0; right.len()];
+    for (direction, y) in directions.iter().zip(&y) {
+        axpy(*y, direction, &mut x);
+    }
+    (x, report)
+}
+
+/// The Krylov basis of an operator and a right side, and the coefficients of the smallest residual.
+fn arnoldi(
+    mut operator: impl FnMut(&[f64]) -> Vec<f64>,
+    right: &[f64],
+    limits: KrylovLimits,
+    interrupt: &Interrupt,
+) -> (KrylovReport, Vec<f64>, Vec<Vec<f64>>) {
+    let n = right.len();
+    let norm = euclidean_norm(right);
+    if norm <= limits.tolerance || n == 0 {
+        let report = KrylovReport { iterations: 0, residual_norm: norm };
+        return (report, Vec::new(), Vec::new());
+    }
+    let mut basis: Vec<Vec<f64>> = vec![right.iter().map(|r| r / norm).collect()];
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let mut rotations: Vec<(f64, f64)> = Vec::new();
     let mut rhs = vec![norm];
@@ -50,8 +94,7 @@ pub fn gmres(
         if interrupt.is_set() {
             break;
         }
-        let mut w = vec![0.0; n];
-        operator(&basis[k], &mut w);
+        let mut w = operator(&basis[k]);
         let before = euclidean_norm(&w);
         let mut column = orthogonalise(&basis, &mut w);
         let mut below = euclidean_norm(&w);
@@ -81,11 +124,7 @@ pub fn gmres(
     }
     let iterations = columns.len();
     let y = back_substitute(&columns, &rhs);
-    residual.fill(0.0);
-    for (v, y) in basis.iter().zip(&y) {
-        axpy(*y, v, residual);
-    }
-    KrylovReport { iterations, residual_norm: rhs[iterations].abs() }
+    (KrylovReport { iterations, residual_norm: rhs[iterations].abs() }, y, basis)
 }
 
 /// Removes from `w` its components along the basis; returns them, and a zero for the next one.

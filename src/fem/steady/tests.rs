@@ -1,0 +1,1 @@
+//! The steady block against differences and exact results.
