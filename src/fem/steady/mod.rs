@@ -385,30 +385,3 @@ fn check_speed(speed: f64) -> Result<(), FemError> {
     let (quantity, range) = ("the speed in m/s", "positive and finite");
     Err(FemError::OutOfRange { quantity, value: speed, range })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::surface::Wave;
-    use std::time::{Duration, Instant};
-
-    #[test]
-    fn an_interrupt_ends_a_solve_and_is_no_end_of_a_path() {
-        let wave = Wave { wavelength: 6.25e-5, amplitude: 1.867e-5, phase: 0.0 };
-        let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
-        let (rubber, law) = (Rubber::table_2_1(), Rheology::NeoHookean);
-        let interrupt = Interrupt::default();
-        let mut contact = SteadyContact::new(&rubber, law, 0.01, profile, BlockOptions::new(1024))
-            .unwrap()
-            .interruptible(&interrupt);
-        let user = std::thread::spawn(move || {
-            std::thread::sleep(Duration::from_millis(500));
-            interrupt.set();
-            Instant::now()
-        });
-        assert_eq!(contact.solve(3e6).err(), Some(FemError::Interrupted));
-        let heard = user.join().unwrap().elapsed();
-        assert!(heard < Duration::from_secs(10), "{heard:?}");
-        assert_eq!(contact.solve(3e5).err(), Some(FemError::Interrupted));
-    }
-}

@@ -174,4 +174,20 @@ impl Pattern {
             }
         }
     }
+
+    /// The product of a matrix with a vector.
+    #[cfg(test)]
+    pub fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; vector.len()];
+        for column in 0..self.start.len() - 1 {
+            for block in self.start[column]..self.start[column + 1] {
+                let row = self.rows[block] as usize;
+                for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let entry = values[self.entry(column, block, [x, y])];
+                    product[2 * row + x] += entry * vector[2 * column + y];
+                }
+            }
+        }
+        product
+    }
 }
