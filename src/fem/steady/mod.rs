@@ -141,7 +141,7 @@ const MOST_WAVES_FROM_A_TIP: f64 = 4.0;
 /// Columns of the coarsest grid of a path on the shortest wave of the profile.
 const COARSEST_PER_WAVE: f64 = 40.0;
 /// Pressure of the first contact over the modulus at the shortest wave.
-const FIRST_PRESSURE: f64 = 5e-3;
+const FIRST_PRESSURE: f64 = 3e-2;
 
 /// A block of rubber that slides at constant speed over a rigid periodic profile: plane strain,
 /// finite linear viscoelasticity, frictionless contact. The upper edge carries the dead pressure

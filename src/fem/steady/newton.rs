@@ -20,8 +20,8 @@ const MOST_HALVINGS: usize = 8;
 const STARTING_STEPS: usize = 5;
 const GROWTH: [f64; 2] = [10.0, 2.0];
 const SLIGHT: f64 = 0.1;
-/// A solve is given up where the residual is above the first number after as many steps as the second.
-const HOPELESS: (f64, usize) = (30.0, 6);
+/// A solve is given up where the residual is above the first number from as many steps on as the second.
+const HOPELESS: [(f64, usize); 2] = [(5.0, 5), (1.0, 8)];
 /// Parts of det F and of A that a step must leave.
 const LEFT_OF_VOLUME: f64 = 0.2;
 const LEFT_OF_LABEL: f64 = 0.1;
@@ -54,7 +54,7 @@ impl Level {
                 *state = now;
                 return Ok((step, balance.norm));
             }
-            let hopeless = step >= HOPELESS.1 && balance.norm > HOPELESS.0;
+            let hopeless = HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
             if step == target.most_steps || hopeless || self.interrupt.is_set() {
                 break;
             }

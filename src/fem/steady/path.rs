@@ -7,7 +7,8 @@ use super::transfer::transfer;
 use super::NotConverged;
 
 /// Barrier of a path, as a share of mean force times roughness.
-const BARRIER: f64 = 2e-2;
+const BARRIER: f64 = 3e-2;
+
 /// Barrier with which a block is put above the profile.
 const FIRST_BARRIER: f64 = 0.3;
 /// Residual of a point behind the barrier, and of a solution.
@@ -20,7 +21,7 @@ const MOST_STEPS_ON_NEW_GRID: usize = 25;
 const MOST_STEPS_TO_EXACT: usize = 25;
 /// Ratio of the first pressures, and the largest one.
 const FIRST_RATIO: f64 = 2.0;
-const LARGEST_RATIO: f64 = 6.0;
+const LARGEST_RATIO: f64 = 4.0;
 /// Newton steps below which the next ratio of pressures is larger.
 const EASY: usize = 8;
 /// Ratio of pressures at which a path is given up.
@@ -131,10 +132,9 @@ impl Path {
     /// The exact contact at the pressure of the path, and its residual.
     pub fn finish(&mut self) -> Result<(State, f64), NotConverged> {
         let mut state = self.state.clone();
-        let mut barrier = BARRIER;
+        let mut barrier = BARRIER * LESS_BARRIER;
         let level = &mut self.level;
-        reduce(level, &mut state, barrier, barrier * LESS_BARRIER)?;
-        barrier *= LESS_BARRIER;
+        reduce(level, &mut state, BARRIER, barrier)?;
         for _ in 0..MOST_CLOSINGS {
             reduce(level, &mut state, barrier, barrier * LESS_BARRIER)?;
             barrier *= LESS_BARRIER;
