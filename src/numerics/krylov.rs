@@ -243,8 +243,7 @@ mod tests {
             }
         };
         let mut x = rhs.clone();
-        let report =
-            flexible_gmres(multiply, precondition, &mut x, limits, &Interrupt::default());
+        let report = flexible_gmres(multiply, precondition, &mut x, limits, &Interrupt::default());
         let residual = residual_of(&x, &rhs);
         assert!(residual < 2e-11, "{report:?}, true residual {residual:e}");
         let mut plain = rhs.clone();

@@ -12,18 +12,22 @@ pub(super) struct Part {
 }
 
 /// A set of at most this many nodes is not cut further: its front is dense and small enough.
-const LEAF: usize = 12;
+const LEAF: usize = 16;
 
 /// Cuts the nodes in halves again and again (George 1973, doi:10.1137/0710032) and returns
 /// separators and leaves in postorder: children come before their parent, the root is last.
 ///
-/// A cut puts the nodes on two sides of a line across the longer or the shorter extent, whichever
-/// has fewer nodes beside it, and the separator is those nodes of one side that have a neighbour on the other. So
-/// couplings around the wrap of a periodic grid are cut with the first line, as any others are, and no
-/// period need be known.
+/// A cut is a line across one of the two axes; the nodes of one side that have a neighbour on the
+/// other are the separator. Of the two axes and sides that with the smallest separator is taken.
+/// Couplings around the wrap of a periodic grid are cut by the first line across them, as all others
+/// are, so no period need be known.
 pub(super) fn dissect(graph: &BlockPattern, coordinates: &[[f64; 2]]) -> Vec<Part> {
-    let mut dissection =
-        Dissection { graph, coordinates, side: vec![Side::Outside; graph.nodes()], parts: Vec::new() };
+    let mut dissection = Dissection {
+        graph,
+        coordinates,
+        side: vec![Side::Outside; graph.nodes()],
+        parts: Vec::new(),
+    };
     dissection.cut((0..graph.nodes() as u32).collect());
     dissection.parts
 }

@@ -2,9 +2,25 @@
 //! in single precision (Duff & Reid 1983, doi:10.1145/356044.356047), for the preconditioner of
 //! [`flexible_gmres`](crate::numerics::krylov::flexible_gmres) or for refinement.
 //!
-//! Nodes are ordered by nested dissection of their coordinates. Each separator, and each leaf between separators, is
-//! eliminated in a dense matrix, its front, with row exchanges among the rows of the front. Subtrees
-//! that are independent run beside each other on the threads of rayon.
+//! Nodes are ordered by nested dissection of their coordinates. Each separator, and each leaf
+//! between separators, is eliminated in a dense matrix, its front, with row exchanges among the
+//! rows of the front. Subtrees that are independent run beside each other on the threads of rayon.
+//!
+//! Why not the sparse LU of faer 0.24: it exchanges any rows, so it has to provide for the fill of
+//! `A^T A`. Measured on periodic grids of nearly incompressible Q4 elements that couple to their upstream
+//! neighbours; processor seconds of one factorisation with the symbolic part done, and growth of the resident
+//! memory by symbolic part and factors:
+//!
+//! | nodes | here | faer f64, COLAMD | faer f32, COLAMD | faer f32, this order |
+//! |---|---|---|---|---|
+//! | 96 x 18 | 0.003 s, 5 MB | 0.02 s, 44 MB | 0.02 s, 24 MB | 0.01 s, 14 MB |
+//! | 512 x 24 | 0.028 s, 28 MB | 0.12 s, 0.28 GB | 0.09 s, 0.15 GB | 0.2 s, 0.28 GB |
+//! | 4096 x 30 | 0.32 s, 0.28 GB | 1.4 s, 3.1 GB | 1.1 s, 1.6 GB | 7.2 s, 6.3 GB |
+//! | 8192 x 40 | 0.49 s, 0.56 GB | 2.9 s, 5.5 GB | 2.2 s, 2.9 GB | 27 s, 15 GB |
+//!
+//! (The last grid halves its columns where rows are three columns high: 216064 nodes. The last column of figures
+//! is wall time.) A solve takes 0.05 processor seconds on 4096 x 30 nodes, whose L and U have
+//! 54 million entries; a step of refinement gains 2 digits there, 3.5 on grids with coarsening rows.
 
 mod dissection;
 mod numeric;

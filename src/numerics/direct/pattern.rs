@@ -95,9 +95,8 @@ impl BlockPattern {
     /// The pattern of A + A^T.
     pub(super) fn symmetrised(&self) -> Self {
         let pairs = || {
-            (0..self.nodes()).flat_map(|row| {
-                self.row(row).iter().map(move |&column| (row as u32, column))
-            })
+            (0..self.nodes())
+                .flat_map(|row| self.row(row).iter().map(move |&column| (row as u32, column)))
         };
         let both: Vec<(u32, u32)> = pairs().flat_map(|(i, j)| [(i, j), (j, i)]).collect();
         Self::from_couplings(self.nodes(), &both)

@@ -75,7 +75,8 @@ impl<'a> Factors<'a> {
     ) -> Option<[R; 2]> {
         let [a, b] = front.children[..] else { return None };
         let fronts = &self.symbolic.fronts;
-        let (x_a, x_b) = x.split_at_mut(2 * (fronts[a].own.end - fronts[fronts[a].first].own.start));
+        let (x_a, x_b) =
+            x.split_at_mut(2 * (fronts[a].own.end - fronts[fronts[a].first].own.start));
         let length = |k: usize| fronts[k].offset - fronts[fronts[k].first].offset;
         let (a, b) = if length(a).min(length(b)) < SERIAL_FACTORS {
             (task(a, x_a), task(b, x_b))
