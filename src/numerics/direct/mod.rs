@@ -18,9 +18,9 @@
 //! | 4096 x 30 | 0.32 s, 0.28 GB | 1.4 s, 3.1 GB | 1.1 s, 1.6 GB | 7.2 s, 6.3 GB |
 //! | 8192 x 40 | 0.49 s, 0.56 GB | 2.9 s, 5.5 GB | 2.2 s, 2.9 GB | 27 s, 15 GB |
 //!
-//! (The last grid halves its columns where rows are three columns high: 216064 nodes. The last column of figures
-//! is wall time.) A solve takes 0.05 processor seconds on 4096 x 30 nodes, whose L and U have
-//! 54 million entries; a step of refinement gains 2 digits there, 3.5 on grids with coarsening rows.
+//! (The last grid halves its columns where rows are three columns high: 216064 nodes. The last
+//! column of figures is wall time.) A solve takes 0.05 processor seconds on 4096 x 30 nodes, whose
+//! L and U have 54 million entries; a step of refinement gains two digits on all four grids.
 
 mod dissection;
 mod numeric;
@@ -42,8 +42,8 @@ use symbolic::Symbolic;
 /// Precision of the factors.
 type Real = f32;
 
-/// A pivot of this size or less, relative to the largest entry of its column before its front is eliminated, is
-/// round-off.
+/// A pivot of this size or less, relative to the largest entry of its column before its front is
+/// eliminated, is round-off.
 const TINY: Real = Real::EPSILON;
 
 /// With a relative pivot below this the factors are tried on a vector before they are used. The smallest
@@ -57,7 +57,8 @@ const DOUBTFUL: Real = 1e-3;
 pub enum FactorError {
     /// A pivot is zero, or round-off.
     #[error(
-        "the matrix is singular to single precision: unknown {unknown} has a pivot of {relative:.1e} of its column"
+        "the matrix is singular to single precision: \
+         unknown {unknown} has a pivot of {relative:.1e} of its column"
     )]
     Singular {
         /// Index of the column with the smallest pivot.
@@ -146,8 +147,9 @@ impl SparseLu {
 
     /// Whether `|x - (LU)^-1 A x| < |x| / 2` for the vector `x = (LU)^-1 b`, `b` of random signs.
     ///
-    /// In such an `x` the direction prevails that the factors shrink most. If `A` is singular this is what
-    /// `A` takes to zero, and the error is `x` itself; whereas with `(LU)^-1 A` near the identity it is small.
+    /// In such an `x` the direction prevails that the factors shrink most. If `A` is singular this
+    /// is what `A` takes to zero, and the error is `x` itself; whereas with `(LU)^-1 A` near the
+    /// identity it is small.
     fn reproduce(&self, values: &[Block]) -> bool {
         let mut state = 1u32;
         let mut sign = || {

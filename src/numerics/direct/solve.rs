@@ -21,7 +21,8 @@ impl<'a> Factors<'a> {
         (panel, right, &self.exchanges[2 * front.own.start..2 * front.own.end])
     }
 
-    /// `x <- L^-1 P x` in the subtree of front `k`, whose unknowns `x` is; returns what it adds to its border.
+    /// `x <- L^-1 P x` for the unknowns `x` of the subtree of front `k`; returns what is to be
+    /// added to those of its border.
     pub fn forward(&self, k: usize, x: &mut [Real]) -> Vec<Real> {
         let front = &self.symbolic.fronts[k];
         let (p, b) = (front.pivots(), front.remaining());

@@ -7,10 +7,11 @@ use super::dissection::{Part, dissect};
 use super::numeric::Pivot;
 use super::pattern::BlockPattern;
 
-/// A dense matrix in which some nodes are eliminated, with the nodes that these are coupled to by then.
+/// A dense matrix in which some nodes are eliminated, with the nodes that these are coupled to by
+/// then.
 ///
-/// Its factors are stored column by column: first the panel, columns of the own unknowns over all rows (own,
-/// then border), then the columns of the border over the own rows.
+/// Its factors are stored column by column: first the panel, columns of the own unknowns over all
+/// rows (own, then border), then the columns of the border over the own rows.
 #[derive(Debug)]
 pub(super) struct Front {
     /// Own nodes, in the order of elimination.

@@ -4,7 +4,7 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 
 use super::*;
-use crate::numerics::krylov::euclidean_norm;
+use crate::numerics::krylov::{KrylovLimits, euclidean_norm, flexible_gmres};
 
 /// A grid whose elements couple to their upstream neighbours too, with random values.
 struct Grid {
@@ -141,6 +141,32 @@ fn random_grids_agree_with_dense_elimination() {
             assert!(refined < 1e-10, "{columns:?}, {periodic}: {refined:e} after one refinement");
         }
     }
+}
+
+#[test]
+fn old_factors_precondition_a_changed_matrix() {
+    let mut random = Random(13);
+    let mut grid = grid(&[64, 64, 64, 32, 32, 16, 16], true, &mut random);
+    let mut lu = SparseLu::analyse(grid.pattern.clone(), &grid.coordinates);
+    lu.refactor(&grid.values, &Interrupt::default()).unwrap();
+    for block in &mut grid.values {
+        block.as_flattened_mut().iter_mut().for_each(|x| *x *= 1.0 + 0.05 * random.next());
+    }
+    let exact: Vec<f64> = (0..2 * grid.pattern.nodes()).map(|_| random.next()).collect();
+    let mut x = vec![0.0; exact.len()];
+    grid.pattern.multiply(&grid.values, &exact, &mut x);
+    let report = flexible_gmres(
+        |x, y| grid.pattern.multiply(&grid.values, x, y),
+        |v, z| {
+            z.copy_from_slice(v);
+            lu.solve(z);
+        },
+        &mut x,
+        KrylovLimits { tolerance: 1e-11, max_iterations: 40 },
+        &Interrupt::default(),
+    );
+    assert!(report.iterations < 25 && report.residual_norm <= 1e-11, "{report:?}");
+    assert!(distance(&x, &exact) < 1e-11, "{:e}", distance(&x, &exact));
 }
 
 #[test]
