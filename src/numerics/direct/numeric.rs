@@ -140,10 +140,10 @@ impl Elimination<'_> {
         let (mut a11, mut a21) = panel.split_at_row_mut(p);
         exchange_and_factor(a11.rb_mut(), pivots);
         for (j, largest) in largest.into_iter().enumerate() {
-            let pivot =
-                Pivot { relative: a11[(j, j)].abs() / largest, place: 2 * front.own.start + j };
-            // Written so that a value that is not a number fails as well.
-            if !(pivot.relative > TINY) {
+            // A column of zeros has no scale.
+            let relative = if largest > 0.0 { a11[(j, j)].abs() / largest } else { 0.0 };
+            let pivot = Pivot { relative, place: 2 * front.own.start + j };
+            if relative.is_nan() || relative <= TINY {
                 return Err(self.symbolic.singular(pivot));
             }
             smallest = smallest.smaller(pivot);

@@ -111,7 +111,7 @@ fn eliminate_lower(panel: &[Real], height: usize, x: &mut [Real], p: usize) {
 fn eliminate_upper(panel: &[Real], height: usize, x: &mut [Real]) {
     let mut end = x.len();
     while end > 0 {
-        let width = if end % WIDTH == 0 { WIDTH } else { end % WIDTH };
+        let width = if end.is_multiple_of(WIDTH) { WIDTH } else { end % WIDTH };
         let first = end - width;
         let columns = &panel[first * height..end * height];
         for j in (0..width).rev() {
