@@ -51,11 +51,11 @@ fn grid(columns: &[usize], periodic: bool, random: &mut Random) -> Grid {
         nodes
     };
     let mut couplings = Vec::new();
-    for level in 0..columns.len() - 1 {
-        for element in 0..columns[level] {
+    for (level, &count) in columns[..columns.len() - 1].iter().enumerate() {
+        for element in 0..count {
             let own = corners(level, element);
             let upstream = match element {
-                0 if periodic => corners(level, columns[level] - 1),
+                0 if periodic => corners(level, count - 1),
                 0 => Vec::new(),
                 _ => corners(level, element - 1),
             };
@@ -264,7 +264,7 @@ fn an_interrupt_ends_a_factorisation() {
 #[test]
 fn factors_of_a_strip_grow_with_its_length_alone() {
     let per_node = |columns: usize| {
-        let grid = grid(&vec![columns; 18], true, &mut Random(1));
+        let grid = grid(&[columns; 18], true, &mut Random(1));
         let lu = SparseLu::analyse(grid.pattern.clone(), &grid.coordinates);
         lu.nonzeros() as f64 / grid.pattern.nodes() as f64
     };
