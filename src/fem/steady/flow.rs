@@ -158,8 +158,9 @@ mod tests {
             let errors = [error(32, length), error(64, length), error(128, length)];
             let order = (errors[1] / errors[2]).log2();
             assert!(errors[2] < 1e-5, "{length}: {errors:?}");
-            // Long memories err by less than round-off lets an order be seen.
-            assert!(errors[2] < 1e-11 || order > 1.9, "{length}: {errors:?}, order {order}");
+            // Long memories err by less than round-off lets an order be seen, short ones by what is
+            // left of them.
+            assert!(errors[2] < length.min(1e-6) || order > 1.9, "{length}: {errors:?}, order {order}");
         }
     }
 

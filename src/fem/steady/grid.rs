@@ -64,9 +64,13 @@ impl Grid {
         self.first[self.rows() + 1]
     }
 
-    /// Elements of all rows.
-    pub fn elements(&self) -> usize {
-        self.columns.iter().sum()
+    /// Places of all nodes in m.
+    pub fn coordinates(&self) -> Vec<[f64; 2]> {
+        let row = |row: usize| {
+            let (count, z) = (self.nodes_in(row), self.levels[row]);
+            (0..count).map(move |j| [j as f64 * self.period / count as f64, z])
+        };
+        (0..=self.rows()).flat_map(row).collect()
     }
 
     /// First node of a row of nodes.

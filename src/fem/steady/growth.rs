@@ -44,13 +44,13 @@ pub(super) fn grow(
     let mut at = columns(waves);
     let smooth = profile.partial(waves, waves, 1.0);
     let first = setting.first_pressure(&smooth).min(pressure);
-    let mut path = Path::start(level(at, &smooth)?, first)?;
+    let mut path = Path::start(level(at, &smooth), first)?;
     path.advance_to(pressure)?;
     while waves < shortest {
         let next = (2.0 * waves).min(shortest);
         if columns(next) > at {
             at = columns(next);
-            path.refine(level(at, &profile.partial(waves, waves, 1.0))?)?;
+            path.refine(level(at, &profile.partial(waves, waves, 1.0)))?;
         }
         // What is shorter than the shortest waves that matter grows with them.
         let growing = if next < shortest { next } else { f64::INFINITY };
@@ -58,7 +58,7 @@ pub(super) fn grow(
         waves = next;
     }
     if options.columns > at {
-        path.refine(level(options.columns, profile)?)?;
+        path.refine(level(options.columns, profile))?;
     }
     Ok(path)
 }

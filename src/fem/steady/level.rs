@@ -2,13 +2,13 @@
 
 use super::block::Block;
 use super::contact::Pairs;
-use super::factor::Factor;
 use super::grid::Grid;
 use super::row::Validity;
 use super::state::{Heights, State};
-use super::stiffness::Pattern;
+use super::stiffness::{Places, fix_x, pattern, touch};
 use super::{BlockOptions, NotConverged, Setting};
 use crate::fem::profile::RigidProfile;
+use crate::numerics::direct::{FactorError, SparseLu};
 use std::f64::consts::PI;
 
 /// The contact stiffness over the modulus of the block's shortest wave.
@@ -40,14 +40,6 @@ pub(super) struct Cost {
     pub factorisations: usize,
 }
 
-impl Cost {
-    pub fn add(&mut self, other: Self) {
-        self.newton_steps += other.newton_steps;
-        self.krylov_iterations += other.krylov_iterations;
-        self.factorisations += other.factorisations;
-    }
-}
-
 /// A block over a profile, with the preconditioner of its tangent.
 pub(super) struct Level {
     pub block: Block,
@@ -55,8 +47,8 @@ pub(super) struct Level {
     pub cost: Cost,
     /// c of the contact in Pa.
     stiffness: f64,
-    pattern: Pattern,
-    pub factor: Factor,
+    places: Places,
+    pub factors: SparseLu,
     /// Whether the factors belong to a state near enough.
     pub factored: bool,
     pub interrupt: crate::numerics::Interrupt,
@@ -76,20 +68,22 @@ impl Level {
         setting: &Setting,
         options: &BlockOptions,
         profile: &RigidProfile,
-    ) -> Result<Self, NotConverged> {
+    ) -> Self {
         let grid = Grid::new(options, profile.period());
         let shortest = PI * options.columns as f64 / profile.period() * setting.speed;
-        let pattern = Pattern::new(&grid);
-        Ok(Self {
+        let pattern = pattern(&grid);
+        let places = Places::new(&grid, &pattern);
+        let factors = SparseLu::analyse(pattern, &grid.coordinates());
+        Self {
             surface: Surface::new(profile, options.columns),
             cost: Cost::default(),
             stiffness: STIFFNESS * setting.rubber.reduced_modulus(shortest).norm(),
-            factor: Factor::new(&pattern)?,
+            places,
+            factors,
             factored: false,
-            pattern,
             interrupt: setting.interrupt.clone(),
             block: Block::new(grid, setting.material(profile.period())),
-        })
+        }
     }
 
     pub fn grid(&self) -> &Grid {
@@ -200,16 +194,16 @@ impl Level {
         if self.interrupt.is_set() {
             return Err(NotConverged);
         }
-        let mut values = self.pattern.assemble(&self.block);
+        let pattern = self.factors.pattern();
+        let mut values = self.places.assemble(&self.block, pattern);
         let slopes = pairs.gap_slopes.iter().zip(&pairs.force_slopes).zip(&self.surface.slopes);
-        for (node, ((gap, force), slope)) in slopes.enumerate() {
-            self.pattern.scale_z(&mut values, node, *gap);
-            self.pattern.add_z(&mut values, node, [force * slope, -force]);
-        }
-        let first = self.grid().first_node(self.grid().rows());
-        self.pattern.fix_x(&mut values, first, self.stiffness);
+        let contact: Vec<[f64; 3]> =
+            slopes.map(|((gap, force), slope)| [*gap, force * slope, -force]).collect();
+        touch(pattern, &mut values, &contact);
+        fix_x(pattern, &mut values, self.upper_edge().start / 2, self.stiffness);
         self.cost.factorisations += 1;
-        self.factor.refactor(&values)?;
+        let factored: Result<(), FactorError> = self.factors.refactor(&values, &self.interrupt);
+        factored.map_err(|_| NotConverged)?;
         self.factored = true;
         Ok(())
     }

@@ -20,7 +20,7 @@
 //! | `flow` | the flow rule along a row of unequally spaced labels |
 //! | `point`, `row`, `tangent`, `block` | internal forces and their tangent with relaxation history |
 //! | `contact` | force and gap of a node from one smooth unknown |
-//! | `local`, `stiffness`, `factor` | the preconditioner: a sparse LU of tangents with a short memory |
+//! | `local`, `stiffness` | the preconditioner: sparse factors of tangents with a short memory |
 //! | `level`, `newton` | the equations on one grid, and Newton's method with GMRES |
 //! | `path`, `transfer` | growing pressure, finer grids, from the barrier to the exact contact |
 //! | `growth`, `lift` | profiles of many scales: octaves that grow at constant pressure |
@@ -30,7 +30,6 @@
 mod area;
 mod block;
 mod contact;
-mod factor;
 mod flow;
 mod grid;
 mod growth;
@@ -69,12 +68,6 @@ struct Inverted;
 /// Newton's method or a path did not get there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct NotConverged;
-
-impl From<factor::Singular> for NotConverged {
-    fn from(factor::Singular: factor::Singular) -> Self {
-        Self
-    }
-}
 
 /// The block and its mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -297,14 +290,14 @@ impl SteadyContact {
                 Level::new(&self.setting, &options, &self.profile)
             };
             let entered = match &mut self.path {
-                Some(path) => path.refine(level()?),
+                Some(path) => path.refine(level()),
                 None => Err(NotConverged),
             };
             if self.setting.interrupt.is_set() {
                 return Err(NotConverged);
             }
             if entered.is_err() {
-                match Path::start(level()?, first) {
+                match Path::start(level(), first) {
                     Ok(path) => self.path = Some(path),
                     Err(NotConverged) => continue,
                 }

@@ -91,14 +91,17 @@ impl Level {
     ) -> (Vec<f64>, f64) {
         let limits = KrylovLimits { tolerance, max_iterations };
         let level = &*self;
-        let precondition = |v: &[f64]| {
-            let mut z = v.to_vec();
-            level.factor.solve(&mut z);
-            z
-        };
-        let operator = |z: &[f64]| level.tangent(&balance.pairs, z);
-        let (change, report) =
-            flexible_gmres(operator, precondition, right, limits, &level.interrupt);
+        let mut change = right.to_vec();
+        let report = flexible_gmres(
+            |z, image| image.copy_from_slice(&level.tangent(&balance.pairs, z)),
+            |v, z| {
+                z.copy_from_slice(v);
+                level.factors.solve(z);
+            },
+            &mut change,
+            limits,
+            &level.interrupt,
+        );
         self.cost.krylov_iterations += report.iterations;
         (change, report.residual_norm)
     }

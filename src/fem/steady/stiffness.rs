@@ -3,21 +3,12 @@
 use super::block::Block;
 use super::grid::Grid;
 use super::local::Local;
+use crate::numerics::direct::{self, BlockPattern};
 use rayon::prelude::*;
 
-/// A sparse matrix of 2 x 2 blocks, one a pair of nodes, by columns.
-///
-/// The scalar matrix by columns has block column `C` at `4 start[C]`: its two columns one after the
-/// other, each with the two rows of the first block, of the second, and so on.
+/// Where the local tangents of a grid's elements go in a sparse matrix of one block a pair of nodes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Pattern {
-    /// First block of each block column, and the number of blocks.
-    pub start: Vec<usize>,
-    /// Ascending block rows of each block column.
-    pub rows: Vec<u32>,
-    /// The block of each pair of corners of each element, in the order of [`pairs`].
-    places: Vec<u32>,
-}
+pub(super) struct Places(Vec<u32>);
 
 /// A corner of an element or of the one before: one node, or the middle between two.
 ///
@@ -71,68 +62,44 @@ fn each_element(grid: &Grid, mut visit: impl FnMut(usize, usize)) {
     }
 }
 
-impl Pattern {
-    pub fn new(grid: &Grid) -> Self {
-        let mut columns: Vec<Vec<u32>> = vec![Vec::new(); grid.nodes()];
-        each_element(grid, |row, column| {
-            pairs(&corners(grid, row, column), |_, [r, c], _| {
-                if !columns[c].contains(&(r as u32)) {
-                    columns[c].push(r as u32);
-                }
-            });
-        });
-        let (mut start, mut rows) = (vec![0], Vec::new());
-        for column in &mut columns {
-            column.sort_unstable();
-            rows.extend_from_slice(column);
-            start.push(rows.len());
-        }
-        let mut pattern = Self { start, rows, places: Vec::new() };
+/// The pairs of nodes that are coupled.
+pub(super) fn pattern(grid: &Grid) -> BlockPattern {
+    let mut couplings = Vec::new();
+    each_element(grid, |row, column| {
+        pairs(&corners(grid, row, column), |_, [r, c], _| couplings.push((r as u32, c as u32)));
+    });
+    BlockPattern::from_couplings(grid.nodes(), &couplings)
+}
+
+impl Places {
+    pub fn new(grid: &Grid, pattern: &BlockPattern) -> Self {
         let mut places = Vec::new();
         each_element(grid, |row, column| {
             pairs(&corners(grid, row, column), |_, [r, c], _| {
-                places.push(pattern.place(r, c) as u32);
+                // Coupled pairs are in the pattern.
+                places.push(pattern.position(r, c).unwrap_or_default() as u32);
             });
         });
-        pattern.places = places;
-        pattern
-    }
-
-    /// Numbers of rows and columns of the scalar matrix.
-    pub fn size(&self) -> usize {
-        2 * (self.start.len() - 1)
-    }
-
-    /// The block of a pair of nodes, which must be coupled.
-    fn place(&self, row: usize, column: usize) -> usize {
-        let (start, end) = (self.start[column], self.start[column + 1]);
-        let found = self.rows[start..end].partition_point(|r| (*r as usize) < row);
-        start + found
-    }
-
-    /// Where the entry `(x, y)` of a block in a block column is.
-    fn entry(&self, column: usize, block: usize, [x, y]: [usize; 2]) -> usize {
-        let (start, end) = (self.start[column], self.start[column + 1]);
-        4 * start + 2 * y * (end - start) + 2 * (block - start) + x
+        Self(places)
     }
 
     /// The matrix of the block's local tangents, x and z of a node together.
-    pub fn assemble(&self, block: &Block) -> Vec<f64> {
+    pub fn assemble(&self, block: &Block, pattern: &BlockPattern) -> Vec<direct::Block> {
         let grid = &block.grid;
-        let mut values = vec![0.0; 4 * self.rows.len()];
-        let mut places = self.places.iter();
+        let mut values = vec![[[0.0; 2]; 2]; pattern.blocks()];
+        let mut places = self.0.iter();
         for (r, row) in block.rows().iter().enumerate() {
             let depth = 0.5 * (grid.levels[r] + grid.levels[r + 1]);
             let columns = (0..row.columns).into_par_iter().with_min_len(32);
             let locals: Vec<Local> =
                 columns.map(|column| row.local(&block.material, depth, column)).collect();
             for (column, local) in locals.iter().enumerate() {
-                pairs(&corners(grid, r, column), |[i, j], [_, c], weight| {
+                pairs(&corners(grid, r, column), |[i, j], _, weight| {
                     let Some(place) = places.next() else { return };
+                    let value = &mut values[*place as usize];
                     for x in 0..2 {
                         for y in 0..2 {
-                            values[self.entry(c, *place as usize, [x, y])] +=
-                                weight * local[2 * i + x][2 * j + y];
+                            value[x][y] += weight * local[2 * i + x][2 * j + y];
                         }
                     }
                 });
@@ -140,54 +107,45 @@ impl Pattern {
         }
         values
     }
+}
 
-    /// Multiplies the column of the z unknown of a node.
-    pub fn scale_z(&self, values: &mut [f64], node: usize, factor: f64) {
-        let (start, end) = (self.start[node], self.start[node + 1]);
-        let column = 4 * start + 2 * (end - start)..4 * end;
-        values[column].iter_mut().for_each(|value| *value *= factor);
-    }
-
-    /// Adds to the rows of a node in the column of its z unknown.
-    pub fn add_z(&self, values: &mut [f64], node: usize, added: [f64; 2]) {
-        let block = self.place(node, node);
-        for (x, added) in added.into_iter().enumerate() {
-            values[self.entry(node, block, [x, 1])] += added;
-        }
-    }
-
-    /// Puts an equation for x alone, with the given diagonal, in place of those of the nodes from
-    /// `first` on.
-    pub fn fix_x(&self, values: &mut [f64], first: usize, diagonal: f64) {
-        for column in 0..self.start.len() - 1 {
-            for block in self.start[column]..self.start[column + 1] {
-                let row = self.rows[block] as usize;
-                if row >= first {
-                    (0..2).for_each(|y| values[self.entry(column, block, [0, y])] = 0.0);
-                }
-                if column >= first {
-                    (0..2).for_each(|x| values[self.entry(column, block, [x, 0])] = 0.0);
-                }
-                if row == column && row >= first {
-                    values[self.entry(column, block, [0, 0])] = diagonal;
-                }
+/// Puts contact unknowns in place of the z displacements of the lowest nodes: multiplies their columns
+/// by the first factor and adds the other two to x and z of the node's own rows.
+pub(super) fn touch(pattern: &BlockPattern, values: &mut [direct::Block], nodes: &[[f64; 3]]) {
+    for row in 0..pattern.nodes() {
+        for (place, column) in (pattern.start(row)..).zip(pattern.row(row)) {
+            let Some([gap, along, up]) = nodes.get(*column as usize) else { continue };
+            let value = &mut values[place];
+            value[0][1] *= gap;
+            value[1][1] *= gap;
+            if *column as usize == row {
+                value[0][1] += along;
+                value[1][1] += up;
             }
         }
     }
+}
 
-    /// The product of a matrix with a vector.
-    #[cfg(test)]
-    pub fn multiply(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; vector.len()];
-        for column in 0..self.start.len() - 1 {
-            for block in self.start[column]..self.start[column + 1] {
-                let row = self.rows[block] as usize;
-                for (x, y) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                    let entry = values[self.entry(column, block, [x, y])];
-                    product[2 * row + x] += entry * vector[2 * column + y];
-                }
+/// Puts an equation for x alone, with the given diagonal, in place of those of the nodes from `first` on.
+pub(super) fn fix_x(
+    pattern: &BlockPattern,
+    values: &mut [direct::Block],
+    first: usize,
+    diagonal: f64,
+) {
+    for row in 0..pattern.nodes() {
+        for (place, column) in (pattern.start(row)..).zip(pattern.row(row)) {
+            let (column, value) = (*column as usize, &mut values[place]);
+            if row >= first {
+                value[0] = [0.0; 2];
+            }
+            if column >= first {
+                value[0][0] = 0.0;
+                value[1][0] = 0.0;
+            }
+            if row == column && row >= first {
+                value[0][0] = diagonal;
             }
         }
-        product
     }
 }

@@ -84,9 +84,10 @@ fn the_tangent_is_the_derivative_of_the_forces() {
                 .zip(&tangent)
                 .map(|((a, b), t)| (a - b) / (2.0 * step) - t)
                 .collect();
-            // Coefficients are in single precision.
+            // Coefficients are in single precision; where all branches have relaxed, glassy stiffnesses
+            // cancel in them to a five hundredth.
             let error = largest(&difference) / largest(&tangent);
-            assert!(error < 1e-6, "{law:?}, {columns} columns, {speed} m/s: {error}");
+            assert!(error < if speed < 1e-5 { 1e-4 } else { 1e-6 }, "{law:?}, {columns} columns, {speed} m/s: {error}");
         }
     }
 }
@@ -94,7 +95,7 @@ fn the_tangent_is_the_derivative_of_the_forces() {
 /// With branches that follow at once or not at all the local tangent is the whole one.
 #[test]
 fn the_local_tangent_is_exact_without_a_memory() {
-    use super::stiffness::Pattern;
+    use super::stiffness::{Places, pattern};
     let rubber = Rubber::elastic(4e6, 0.49);
     for law in [Rheology::NeoHookean, Rheology::Linear] {
         let mut block = block(&rubber, law, &BlockOptions::new(12), 0.01);
@@ -105,9 +106,10 @@ fn the_local_tangent_is_exact_without_a_memory() {
         };
         let (at, direction) = (random(0.2), random(1.0));
         block.deform(&at).unwrap();
-        let pattern = Pattern::new(&block.grid);
-        let values = pattern.assemble(&block);
-        let product = pattern.multiply(&values, &direction);
+        let pattern = pattern(&block.grid);
+        let values = Places::new(&block.grid, &pattern).assemble(&block, &pattern);
+        let mut product = vec![0.0; count];
+        pattern.multiply(&values, &direction, &mut product);
         let expected = block.tangent(&direction);
         let difference: Vec<f64> = product.iter().zip(&expected).map(|(a, b)| a - b).collect();
         assert!(largest(&difference) < 1e-6 * largest(&expected), "{law:?}");
