@@ -105,9 +105,8 @@ impl Element {
             // lower left, lower right, upper left, upper right.
             let by_a = [-(1.0 - b), 1.0 - b, -b, b];
             let by_b = [-(1.0 - a), -a, 1.0 - a, a];
-            [0, 1, 2, 3].map(|node| {
-                [by_a[node] / width, by_b[node] / height - skew * by_a[node] / width]
-            })
+            [0, 1, 2, 3]
+                .map(|node| [by_a[node] / width, by_b[node] / height - skew * by_a[node] / width])
         });
         let area = width * height;
         Self { gradients, weights: [0.25 * area, 0.25 * area, 0.25 * area, 0.25 * area, area] }

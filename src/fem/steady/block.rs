@@ -38,7 +38,9 @@ impl Block {
             .rows
             .par_iter_mut()
             .enumerate()
-            .map(|(r, row)| row.deform(material, corners(grid, displacements, r).each_ref().map(|c| &**c)))
+            .map(|(r, row)| {
+                row.deform(material, corners(grid, displacements, r).each_ref().map(|c| &**c))
+            })
             .collect();
         let mut forces = vec![0.0; displacements.len()];
         let mut validity = Validity::BEST;

@@ -160,7 +160,10 @@ mod tests {
             assert!(errors[2] < 1e-5, "{length}: {errors:?}");
             // Long memories err by less than round-off lets an order be seen, short ones by what is
             // left of them.
-            assert!(errors[2] < length.min(1e-6) || order > 1.9, "{length}: {errors:?}, order {order}");
+            assert!(
+                errors[2] < length.min(1e-6) || order > 1.9,
+                "{length}: {errors:?}, order {order}"
+            );
         }
     }
 

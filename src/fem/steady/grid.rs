@@ -5,7 +5,7 @@ use super::super::mesh::Element;
 use super::BlockOptions;
 
 /// Height of a row over its columns from which the rows above have half as many columns.
-const COARSEN: f64 = 3.0;
+const COARSEN: f64 = 4.0;
 /// Fewest columns that are halved on: a row that is not has at least half as many.
 const FEWEST_COLUMNS: usize = 64;
 
@@ -41,7 +41,8 @@ impl Grid {
         for height in &mesh.row_heights[1..] {
             let below = columns[columns.len() - 1];
             let flat = *height > COARSEN * period / below as f64;
-            let halved = options.coarsening && flat && below % 2 == 0 && below / 2 >= FEWEST_COLUMNS;
+            let halved =
+                options.coarsening && flat && below % 2 == 0 && below / 2 >= FEWEST_COLUMNS;
             columns.push(if halved { below / 2 } else { below });
         }
         let mut first = vec![0];
@@ -124,7 +125,8 @@ impl Grid {
         for node in 0..count {
             corners.extend_from_slice(&above[2 * node..2 * node + 2]);
             for i in 0..2 {
-                let tied = masters(node, count).map(|(master, weight)| weight * above[2 * master + i]);
+                let tied =
+                    masters(node, count).map(|(master, weight)| weight * above[2 * master + i]);
                 corners.push(tied.iter().sum());
             }
         }

@@ -103,3 +103,81 @@ fn reshape(path: &mut Path, profile: &RigidProfile) -> Result<usize, NotConverge
     }
     solved
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::setting;
+    use super::super::{SteadyContact, conclude};
+    use super::*;
+    use crate::contact::SlidingContact;
+    use crate::rubber::{Rheology, Rubber};
+    use crate::surface::Wave;
+    use approx::assert_relative_eq;
+
+    const PERIOD: f64 = 1e-3;
+
+    /// `octaves` waves of equal slope.
+    fn profile(octaves: i32, amplitude_per_wavelength: f64) -> RigidProfile {
+        let wave = |octave: i32| {
+            let wavelength = PERIOD / 2_f64.powi(octave);
+            let amplitude = amplitude_per_wavelength * wavelength;
+            Wave { wavelength, amplitude, phase: 1.3 * f64::from(octave * octave) }
+        };
+        let waves: Vec<Wave> = (0..octaves).map(wave).collect();
+        RigidProfile::from_waves(&waves, PERIOD)
+    }
+
+    #[test]
+    fn growth_and_growing_pressure_lead_to_one_solution() {
+        let setting = setting(&Rubber::table_2_1(), Rheology::NeoHookean, 0.01);
+        let profile = profile(3, 0.05);
+        let (options, pressure) = (BlockOptions::new(128), 4e4);
+        let mut contact = SteadyContact::new(
+            &setting.rubber,
+            Rheology::NeoHookean,
+            0.01,
+            profile.clone(),
+            options,
+        )
+        .unwrap();
+        let expected = contact.solve(pressure).unwrap();
+        let mut path = grow(&setting, &profile, options, pressure).unwrap();
+        let grown = conclude(&mut path, 0.01).unwrap();
+        assert!(expected.contact_area_fraction < 0.5);
+        // The residuals of both.
+        assert_relative_eq!(
+            grown.friction_coefficient,
+            expected.friction_coefficient,
+            max_relative = 1e-6
+        );
+        assert_relative_eq!(
+            grown.contact_area_fraction,
+            expected.contact_area_fraction,
+            max_relative = 1e-6
+        );
+    }
+
+    #[test]
+    fn five_octaves_of_small_slopes_have_the_friction_of_the_half_space() {
+        // rms slope 0.04, as one wave; 16 waves on 512 columns.
+        let profile = profile(5, 0.004);
+        let rubber = Rubber::table_2_1();
+        let pressure = 1e4;
+        let mut half_space =
+            SlidingContact::new(&rubber, 0.01, PERIOD, &profile.sample(4096)).unwrap();
+        let expected = half_space.solve(pressure).unwrap();
+        let options = BlockOptions::new(512);
+        let mut contact =
+            SteadyContact::new(&rubber, Rheology::NeoHookean, 0.01, profile, options).unwrap();
+        let solution = contact.solve(pressure).unwrap();
+        assert!(expected.contact_area_fraction < 0.5);
+        // Slope and mesh: 32 columns on the shortest wave.
+        assert_relative_eq!(
+            solution.friction_coefficient,
+            expected.friction_coefficient,
+            max_relative = 0.03
+        );
+        let further = contact.solve(2.0 * pressure).unwrap();
+        assert!(further.contact_area_fraction > solution.contact_area_fraction);
+    }
+}

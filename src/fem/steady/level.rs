@@ -64,11 +64,7 @@ pub(super) struct Balance {
 }
 
 impl Level {
-    pub fn new(
-        setting: &Setting,
-        options: &BlockOptions,
-        profile: &RigidProfile,
-    ) -> Self {
+    pub fn new(setting: &Setting, options: &BlockOptions, profile: &RigidProfile) -> Self {
         let grid = Grid::new(options, profile.period());
         let shortest = PI * options.columns as f64 / profile.period() * setting.speed;
         let pattern = pattern(&grid);
@@ -111,8 +107,9 @@ impl Level {
         let heights = &self.surface.heights;
         let length = barrier * self.surface.scale.roughness;
         let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let carried =
-            |clearance: f64| heights.iter().map(|z| length / (highest - z + clearance)).sum::<f64>();
+        let carried = |clearance: f64| {
+            heights.iter().map(|z| length / (highest - z + clearance)).sum::<f64>()
+        };
         // The highest node alone carries at least its share, all together no more than that.
         let nodes = heights.len() as f64;
         let (mut low, mut high) = (length / nodes, 2.0 * length);
@@ -184,7 +181,9 @@ impl Level {
             forces[2 * j + 1] -= force;
         }
         let fixed = forces[upper.clone()].iter_mut().step_by(2);
-        fixed.zip(changes[upper].iter().step_by(2)).for_each(|(force, x)| *force = self.stiffness * x);
+        fixed
+            .zip(changes[upper].iter().step_by(2))
+            .for_each(|(force, x)| *force = self.stiffness * x);
         forces
     }
 

@@ -1,8 +1,8 @@
 //! Newton's method at one pressure on one grid.
 
+use super::NotConverged;
 use super::level::{Balance, Level};
 use super::state::State;
-use super::NotConverged;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, flexible_gmres};
 
 /// Relative accuracy of the linear solves.
@@ -40,7 +40,11 @@ pub(super) struct Target {
 impl Level {
     /// Takes a state to the target; returns the Newton steps and the residual. Where it fails, the
     /// state stays what it was.
-    pub fn solve(&mut self, state: &mut State, target: Target) -> Result<(usize, f64), NotConverged> {
+    pub fn solve(
+        &mut self,
+        state: &mut State,
+        target: Target,
+    ) -> Result<(usize, f64), NotConverged> {
         let mut now = State { pressure: target.pressure, ..state.clone() };
         self.factored = false;
         let mut balance = self.balance(&mut now, target.barrier)?;
@@ -54,7 +58,8 @@ impl Level {
                 *state = now;
                 return Ok((step, balance.norm));
             }
-            let hopeless = HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
+            let hopeless =
+                HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
             if step == target.most_steps || hopeless || self.interrupt.is_set() {
                 break;
             }

@@ -1,10 +1,10 @@
 //! From a slight contact to the wanted pressure, and from the barrier to the exact contact.
 
+use super::NotConverged;
 use super::level::{Cost, Level};
 use super::newton::Target;
 use super::state::State;
 use super::transfer::transfer;
-use super::NotConverged;
 
 /// Barrier of a path, as a share of mean force times roughness.
 const BARRIER: f64 = 3e-2;
@@ -25,10 +25,12 @@ const LARGEST_RATIO: f64 = 4.0;
 /// Newton steps below which the next ratio of pressures is larger.
 const EASY: usize = 8;
 /// Ratio of pressures at which a path is given up.
-const SMALLEST_RATIO: f64 = 1.005;
+const SMALLEST_RATIO: f64 = 1.02;
 /// Factors of the barrier: the first one, the smallest, and the one at which it is given up.
 const LESS_BARRIER: f64 = 0.1;
 const LITTLE_LESS_BARRIER: f64 = 0.93;
+/// States kept on a level.
+const MOST_KEPT: usize = 16;
 /// Attempts at the exact contact, each from a smaller barrier.
 const MOST_CLOSINGS: usize = 6;
 
@@ -87,6 +89,11 @@ impl Path {
         Ok(())
     }
 
+    /// Takes the state to a pressure in one solve.
+    pub fn jump_to(&mut self, pressure: f64) -> Result<(), NotConverged> {
+        self.level.solve(&mut self.state, behind(pressure, BARRIER)).map(|_| ())
+    }
+
     /// Goes back to the state passed before.
     pub fn step_back(&mut self) -> Option<()> {
         self.state = self.passed.pop()?;
@@ -110,10 +117,8 @@ impl Path {
     pub fn refine(&mut self, mut level: Level) -> Result<(), NotConverged> {
         level.cost = self.level.cost;
         let mut state = transfer(&self.state, BARRIER, &self.level, &level);
-        let target = Target {
-            most_steps: MOST_STEPS_ON_NEW_GRID,
-            ..behind(state.pressure, BARRIER)
-        };
+        let target =
+            Target { most_steps: MOST_STEPS_ON_NEW_GRID, ..behind(state.pressure, BARRIER) };
         let solved = level.solve(&mut state, target);
         if solved.is_err() {
             self.level.cost = level.cost;
@@ -156,9 +161,6 @@ impl Path {
         std::mem::take(&mut self.level.cost)
     }
 }
-
-/// States kept on a level.
-const MOST_KEPT: usize = 16;
 
 fn behind(pressure: f64, barrier: f64) -> Target {
     Target { pressure, barrier, tolerance: LOOSE, most_steps: MOST_STEPS }

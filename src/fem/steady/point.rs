@@ -98,12 +98,7 @@ impl Point {
         let f = &self.deformation;
         let [q_s, q_z, w_s, w_z] = *gradient;
         let along = [f[0] * q_s / a, (w_s + f[2] * q_s) / a];
-        [
-            along[0],
-            f[0] * q_z - along[0] * b,
-            along[1],
-            w_z + f[2] * q_z - along[1] * b,
-        ]
+        [along[0], f[0] * q_z - along[0] * b, along[1], w_z + f[2] * q_z - along[1] * b]
     }
 
     /// Change of C by that of the deformation gradient.
@@ -161,7 +156,11 @@ pub(super) struct Law<'a> {
 impl Law<'_> {
     /// Stress and coefficients of the equilibrium spring.
     #[inline]
-    pub fn equilibrium(&self, point: &mut Point, measure: &Symmetric) -> Result<Symmetric, Inverted> {
+    pub fn equilibrium(
+        &self,
+        point: &mut Point,
+        measure: &Symmetric,
+    ) -> Result<Symmetric, Inverted> {
         let spring = &self.rubber.equilibrium;
         let (metric, volume) = metric(self.rubber.rheology, measure)?;
         point.metric = narrow(&metric);

@@ -271,7 +271,8 @@ pub(super) fn shifts(corners: Corners<'_>, kind: usize, columns: usize) -> Vec<f
     let (a, b) = PLACES[kind];
     (0..columns)
         .map(|column| {
-            let (left, right) = (2 * column, 2 * if column + 1 == columns { 0 } else { column + 1 });
+            let (left, right) =
+                (2 * column, 2 * if column + 1 == columns { 0 } else { column + 1 });
             let [lower, upper] = corners.map(|row| (1.0 - a) * row[left] + a * row[right]);
             (1.0 - b) * lower + b * upper
         })

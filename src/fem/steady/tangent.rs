@@ -4,9 +4,7 @@ use super::super::kinematics::Tensor;
 use super::super::mesh::{CENTRE, POINTS};
 use super::flow::{Relaxation, window};
 use super::point::{Memory, Point, wide};
-use super::row::{
-    Corners, Material, Row, before, displacement_gradient, nodal, scatter, shifts,
-};
+use super::row::{Corners, Material, Row, before, displacement_gradient, nodal, scatter, shifts};
 use crate::rubber::finite_strain::Symmetric;
 
 /// Changes at a kind of points.
@@ -36,7 +34,9 @@ impl Row {
             for (column, point) in points.iter().enumerate() {
                 let conjugate = &changes.stresses[column];
                 let stress = match self.conversions.get(kind * self.columns + column) {
-                    Some(conversion) => conversion.stress_change(conjugate, &changes.strains[column]),
+                    Some(conversion) => {
+                        conversion.stress_change(conjugate, &changes.strains[column])
+                    }
                     None => *conjugate,
                 };
                 let (df, gradient) = (&changes.deformations[column], &changes.gradients[column]);

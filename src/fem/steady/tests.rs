@@ -8,8 +8,8 @@ use crate::fem::mesh::Grading;
 use crate::fem::profile::RigidProfile;
 use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
-use rand::{RngExt, SeedableRng};
 use crate::surface::Wave;
+use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::time::{Duration, Instant};
 
@@ -87,7 +87,10 @@ fn the_tangent_is_the_derivative_of_the_forces() {
             // Coefficients are in single precision; where all branches have relaxed, glassy stiffnesses
             // cancel in them to a five hundredth.
             let error = largest(&difference) / largest(&tangent);
-            assert!(error < if speed < 1e-5 { 1e-4 } else { 1e-6 }, "{law:?}, {columns} columns, {speed} m/s: {error}");
+            assert!(
+                error < if speed < 1e-5 { 1e-4 } else { 1e-6 },
+                "{law:?}, {columns} columns, {speed} m/s: {error}"
+            );
         }
     }
 }
