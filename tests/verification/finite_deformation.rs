@@ -23,7 +23,7 @@ fn contact(rubber: &Rubber, speed: f64, amplitude: f64, options: BlockOptions) -
 
 fn assert_solved(solution: &SteadySolution) {
     // The bound that a solution is promised to hold.
-    assert!(solution.residual <= 1e-8, "{}", solution.residual);
+    assert!(solution.residual <= 1e-9, "{}", solution.residual);
     let load: f64 = solution.nodes.iter().map(|node| node.pressure).sum();
     assert!(load > 0.0);
     for node in &solution.nodes {
@@ -70,7 +70,7 @@ fn small_slopes_have_the_friction_of_the_half_space() {
 /// On a flat profile every node carries its share, at any height of the pressure.
 #[test]
 fn a_flat_profile_presses_uniformly_without_friction() {
-    for pressure in [1e4, 1e6, 5e6] {
+    for pressure in [1e4, 1e6, 5e6, 2.5e7] {
         let solution =
             contact(&table_2_1(), 0.01, 0.0, BlockOptions::new(16)).solve(pressure).unwrap();
         assert_solved(&solution);
@@ -159,8 +159,8 @@ fn a_continued_path_ends_where_a_new_one_does() {
         let b =
             contact(&table_2_1(), 0.01, amplitude, BlockOptions::new(32)).solve(pressure).unwrap();
         assert_solved(&a);
-        // The rows are shifted against a shear that is met to 0.05, which costs 1e-3 on this mesh.
-        assert_relative_eq!(a.friction_coefficient, b.friction_coefficient, max_relative = 2e-3);
+        // The residuals of both.
+        assert_relative_eq!(a.friction_coefficient, b.friction_coefficient, max_relative = 1e-7);
     }
 }
 
@@ -177,6 +177,65 @@ fn a_strongly_sheared_block_has_the_friction_of_other_codes() {
         solution.friction_coefficient
     );
     assert!(solution.shear > 1.0);
+}
+
+/// One wave at large pressures, in less than a hundred Newton steps from scratch: friction of another
+/// code of the same equations, which converged to 1e-3 between 64 and 128 columns; the heat of the
+/// branches on 96 columns.
+#[test]
+fn large_pressures_are_solved_whatever_the_shear() {
+    let amplitude = shortest_wave().amplitude;
+    let expected = [
+        (0.01, [(8.07e6, 0.4483), (1.2e7, 0.3887), (1.8e7, 0.3321), (2.5e7, 0.2957)].as_slice()),
+        (0.05, [(8e6, 0.5539), (1.6e7, 0.4308), (2.5e7, 0.3626)].as_slice()),
+    ];
+    for (speed, points) in expected {
+        for (pressure, friction) in points {
+            let [coarse, fine] = [64, 96].map(|columns| {
+                contact(&table_2_1(), speed, amplitude, BlockOptions::new(columns))
+                    .solve(*pressure)
+                    .unwrap()
+            });
+            for solution in [&coarse, &fine] {
+                assert_solved(solution);
+                assert!(solution.newton_steps < 100, "{}", solution.newton_steps);
+            }
+            let [coarse, fine, heat] =
+                [coarse.friction_coefficient, fine.friction_coefficient, fine.hysteretic_friction];
+            assert_relative_eq!(coarse, fine, max_relative = 2e-3);
+            assert_relative_eq!(fine, *friction, max_relative = 1e-3);
+            assert_relative_eq!(heat, fine, max_relative = 7e-3);
+        }
+    }
+}
+
+/// The columns stand above their points of the profile: a shear of 6 slants no element.
+#[test]
+fn contact_nodes_stand_at_equal_distances_however_large_the_shear() {
+    let amplitude = shortest_wave().amplitude;
+    let solution =
+        contact(&table_2_1(), 0.05, amplitude, BlockOptions::new(64)).solve(2.5e7).unwrap();
+    assert!(solution.shear > 6.0, "{}", solution.shear);
+    for (j, node) in solution.nodes.iter().enumerate() {
+        assert_relative_eq!(node.x, j as f64 * PERIOD / 64.0, epsilon = 1e-15);
+    }
+}
+
+/// Rows that coarsen with depth change friction and heat by a thousandth.
+#[test]
+fn coarsening_rows_change_little() {
+    let amplitude = shortest_wave().amplitude;
+    let [uniform, coarsened] = [false, true].map(|coarsening| {
+        let options = BlockOptions { coarsening, ..BlockOptions::new(256) };
+        contact(&table_2_1(), 0.01, amplitude, options).solve(2e6).unwrap()
+    });
+    for (a, b) in [
+        (uniform.friction_coefficient, coarsened.friction_coefficient),
+        (uniform.hysteretic_friction, coarsened.hysteretic_friction),
+        (uniform.contact_area_fraction, coarsened.contact_area_fraction),
+    ] {
+        assert_relative_eq!(a, b, max_relative = 3e-3);
+    }
 }
 
 #[test]
