@@ -221,7 +221,8 @@ fn contact_nodes_stand_at_equal_distances_however_large_the_shear() {
     }
 }
 
-/// Rows that coarsen with depth change friction and heat by a thousandth.
+/// Rows that coarsen with depth change friction and heat by less than a thousandth, and the area by what
+/// is left of a node's force at its edges.
 #[test]
 fn coarsening_rows_change_little() {
     let amplitude = shortest_wave().amplitude;
@@ -229,12 +230,13 @@ fn coarsening_rows_change_little() {
         let options = BlockOptions { coarsening, ..BlockOptions::new(256) };
         contact(&table_2_1(), 0.01, amplitude, options).solve(2e6).unwrap()
     });
-    for (a, b) in [
-        (uniform.friction_coefficient, coarsened.friction_coefficient),
-        (uniform.hysteretic_friction, coarsened.hysteretic_friction),
-        (uniform.contact_area_fraction, coarsened.contact_area_fraction),
+    let area = |solution: &SteadySolution| solution.contact_area_fraction;
+    for (a, b, tolerance) in [
+        (uniform.friction_coefficient, coarsened.friction_coefficient, 1e-3),
+        (uniform.hysteretic_friction, coarsened.hysteretic_friction, 1e-3),
+        (area(&uniform), area(&coarsened), 5e-3),
     ] {
-        assert_relative_eq!(a, b, max_relative = 3e-3);
+        assert_relative_eq!(a, b, max_relative = tolerance);
     }
 }
 

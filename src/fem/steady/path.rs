@@ -19,6 +19,8 @@ const MOST_STEPS: usize = 14;
 const MOST_FIRST_STEPS: usize = 20;
 const MOST_STEPS_ON_NEW_GRID: usize = 25;
 const MOST_STEPS_TO_EXACT: usize = 25;
+/// What the first pressure is divided by, one after the other, until it converges.
+const FIRST_DIVISORS: [f64; 4] = [1.0, 6.0, 36.0, 216.0];
 /// Ratio of the first pressures, and the largest one.
 const FIRST_RATIO: f64 = 2.0;
 const LARGEST_RATIO: f64 = 4.0;
@@ -44,18 +46,14 @@ pub(super) struct Path {
 }
 
 impl Path {
-    /// The first contact, at a small pressure.
+    /// The first contact, at a small pressure, or where that fails at a smaller one.
     pub fn start(mut level: Level, pressure: f64) -> Result<Self, NotConverged> {
-        let mut state = level.above(pressure, FIRST_BARRIER);
-        let target = Target {
-            pressure,
-            barrier: FIRST_BARRIER,
-            tolerance: LOOSE,
-            most_steps: MOST_FIRST_STEPS,
-        };
-        level.solve(&mut state, target)?;
-        reduce(&mut level, &mut state, FIRST_BARRIER, BARRIER)?;
-        Ok(Self { level, state, ratio: FIRST_RATIO, passed: Vec::new() })
+        for divisor in FIRST_DIVISORS {
+            if let Ok(state) = first_contact(&mut level, pressure / divisor) {
+                return Ok(Self { level, state, ratio: FIRST_RATIO, passed: Vec::new() });
+            }
+        }
+        Err(NotConverged)
     }
 
     /// Takes the state to a pressure, in as few steps as it allows.
@@ -164,6 +162,16 @@ impl Path {
 
 fn behind(pressure: f64, barrier: f64) -> Target {
     Target { pressure, barrier, tolerance: LOOSE, most_steps: MOST_STEPS }
+}
+
+/// A block above the profile, let down on it at a pressure.
+fn first_contact(level: &mut Level, pressure: f64) -> Result<State, NotConverged> {
+    let mut state = level.above(pressure, FIRST_BARRIER);
+    let target =
+        Target { pressure, barrier: FIRST_BARRIER, tolerance: LOOSE, most_steps: MOST_FIRST_STEPS };
+    level.solve(&mut state, target)?;
+    reduce(level, &mut state, FIRST_BARRIER, BARRIER)?;
+    Ok(state)
 }
 
 /// Takes a state from one barrier to a smaller one.
