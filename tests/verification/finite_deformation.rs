@@ -83,12 +83,12 @@ fn a_flat_profile_presses_uniformly_without_friction() {
 }
 
 /// In full contact, where the field has no edges, the work of the drag is the heat of the branches
-/// to the accuracy of the filter; in partial contact the difference falls with the elements.
+/// to the accuracy of the flow rule; in partial contact the difference falls with the elements.
 #[test]
 fn the_work_of_the_drag_is_the_heat_of_the_branches() {
     let full = contact(&table_2_1(), 0.01, 3e-6, BlockOptions::new(128)).solve(2e6).unwrap();
     assert_relative_eq!(full.contact_area_fraction, 1.0, max_relative = 1e-12);
-    assert_relative_eq!(full.friction_coefficient, full.hysteretic_friction, max_relative = 1e-6);
+    assert_relative_eq!(full.friction_coefficient, full.hysteretic_friction, max_relative = 1e-5);
     let amplitude = shortest_wave().amplitude;
     let error = |columns| {
         let options = BlockOptions::new(columns);
@@ -125,7 +125,9 @@ fn both_routes_have_one_friction() {
             poisson_ratio: 0.49,
         };
         let options = BlockOptions::new(columns);
-        let steady = contact(&rubber, speed, amplitude, options).solve(pressure).unwrap();
+        // On twice the columns, where its own error is a thousandth.
+        let finer = BlockOptions::new(2 * columns);
+        let steady = contact(&rubber, speed, amplitude, finer).solve(pressure).unwrap();
         let drag = TransientOptions {
             drag_periods: 6,
             averaged_periods: 1,
