@@ -11,6 +11,14 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 pub const POINTS: usize = 5;
 /// The point of the volumetric part.
 pub const CENTRE: usize = 4;
+/// Where the points lie in the unit square.
+pub const PLACES: [(f64, f64); POINTS] = [
+    (GAUSS[0], GAUSS[0]),
+    (GAUSS[1], GAUSS[0]),
+    (GAUSS[0], GAUSS[1]),
+    (GAUSS[1], GAUSS[1]),
+    (0.5, 0.5),
+];
 
 /// A block of one period, cut into rows of equally wide elements.
 ///
@@ -84,25 +92,24 @@ impl Mesh {
 
     /// Gradients and weights of the elements in a row.
     pub fn element(&self, row: usize) -> Element {
-        let (width, height) = (self.spacing(), self.row_heights[row]);
-        let places = [
-            (GAUSS[0], GAUSS[0]),
-            (GAUSS[1], GAUSS[0]),
-            (GAUSS[0], GAUSS[1]),
-            (GAUSS[1], GAUSS[1]),
-            (0.5, 0.5),
-        ];
-        let gradients = places.map(|(a, b)| {
+        Element::new(self.spacing(), self.row_heights[row], self.skew)
+    }
+}
+
+impl Element {
+    /// An element of the given `width` and `height` in m, whose upper edge is shifted along by
+    /// `skew` times its height.
+    pub fn new(width: f64, height: f64, skew: f64) -> Self {
+        let gradients = PLACES.map(|(a, b)| {
             // Derivatives by the coordinates a and b of the unit square, nodes in the order
             // lower left, lower right, upper left, upper right.
             let by_a = [-(1.0 - b), 1.0 - b, -b, b];
             let by_b = [-(1.0 - a), -a, 1.0 - a, a];
-            [0, 1, 2, 3].map(|node| {
-                [by_a[node] / width, by_b[node] / height - self.skew * by_a[node] / width]
-            })
+            [0, 1, 2, 3]
+                .map(|node| [by_a[node] / width, by_b[node] / height - skew * by_a[node] / width])
         });
         let area = width * height;
-        Element { gradients, weights: [0.25 * area, 0.25 * area, 0.25 * area, 0.25 * area, area] }
+        Self { gradients, weights: [0.25 * area, 0.25 * area, 0.25 * area, 0.25 * area, area] }
     }
 }
 

@@ -11,27 +11,16 @@
 //! |---|---|
 //! | [`profile`] | the rigid profile: height, slope and curvature anywhere |
 //! | [`mesh`] | graded rows of parallelograms, the integration of an element |
-//! | [`filter`] | the flow rule of a steady field along a row |
-//! | [`row`], [`block`], [`unknowns`] | internal forces and their tangent with memory |
-//! | [`local`], [`memory`] | the two factors of the preconditioner |
+//! | [`unknowns`] | the unknowns of a block whose upper edge moves as a whole |
 //! | [`error`] | what can go wrong |
 //!
 //! Elements are bilinear; their volumetric part is integrated at the centre alone (selective
 //! reduced integration), which keeps them from locking at ν = 0.49.
 
-pub mod block;
 pub mod error;
-pub mod filter;
 mod kinematics;
-pub mod local;
-pub mod memory;
 pub mod mesh;
-mod point;
 pub mod profile;
-pub mod row;
 pub mod steady;
 pub mod transient;
 pub mod unknowns;
-
-#[cfg(test)]
-mod tests;

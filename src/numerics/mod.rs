@@ -1,6 +1,7 @@
 //! Mathematics without physics and without files.
 
 pub mod bracket;
+pub mod direct;
 pub mod interpolation;
 pub mod interrupt;
 pub mod krylov;

@@ -23,7 +23,7 @@ fn contact(rubber: &Rubber, speed: f64, amplitude: f64, options: BlockOptions) -
 
 fn assert_solved(solution: &SteadySolution) {
     // The bound that a solution is promised to hold.
-    assert!(solution.residual <= 1e-8, "{}", solution.residual);
+    assert!(solution.residual <= 1e-9, "{}", solution.residual);
     let load: f64 = solution.nodes.iter().map(|node| node.pressure).sum();
     assert!(load > 0.0);
     for node in &solution.nodes {
@@ -70,7 +70,7 @@ fn small_slopes_have_the_friction_of_the_half_space() {
 /// On a flat profile every node carries its share, at any height of the pressure.
 #[test]
 fn a_flat_profile_presses_uniformly_without_friction() {
-    for pressure in [1e4, 1e6, 5e6] {
+    for pressure in [1e4, 1e6, 5e6, 2.5e7] {
         let solution =
             contact(&table_2_1(), 0.01, 0.0, BlockOptions::new(16)).solve(pressure).unwrap();
         assert_solved(&solution);
@@ -83,12 +83,12 @@ fn a_flat_profile_presses_uniformly_without_friction() {
 }
 
 /// In full contact, where the field has no edges, the work of the drag is the heat of the branches
-/// to the accuracy of the filter; in partial contact the difference falls with the elements.
+/// to the accuracy of the flow rule; in partial contact the difference falls with the elements.
 #[test]
 fn the_work_of_the_drag_is_the_heat_of_the_branches() {
     let full = contact(&table_2_1(), 0.01, 3e-6, BlockOptions::new(128)).solve(2e6).unwrap();
     assert_relative_eq!(full.contact_area_fraction, 1.0, max_relative = 1e-12);
-    assert_relative_eq!(full.friction_coefficient, full.hysteretic_friction, max_relative = 1e-6);
+    assert_relative_eq!(full.friction_coefficient, full.hysteretic_friction, max_relative = 1e-5);
     let amplitude = shortest_wave().amplitude;
     let error = |columns| {
         let options = BlockOptions::new(columns);
@@ -125,7 +125,9 @@ fn both_routes_have_one_friction() {
             poisson_ratio: 0.49,
         };
         let options = BlockOptions::new(columns);
-        let steady = contact(&rubber, speed, amplitude, options).solve(pressure).unwrap();
+        // On twice the columns, where its own error is a thousandth.
+        let finer = BlockOptions::new(2 * columns);
+        let steady = contact(&rubber, speed, amplitude, finer).solve(pressure).unwrap();
         let drag = TransientOptions {
             drag_periods: 6,
             averaged_periods: 1,
@@ -159,8 +161,8 @@ fn a_continued_path_ends_where_a_new_one_does() {
         let b =
             contact(&table_2_1(), 0.01, amplitude, BlockOptions::new(32)).solve(pressure).unwrap();
         assert_solved(&a);
-        // The rows are shifted against a shear that is met to 0.05, which costs 1e-3 on this mesh.
-        assert_relative_eq!(a.friction_coefficient, b.friction_coefficient, max_relative = 2e-3);
+        // The residuals of both.
+        assert_relative_eq!(a.friction_coefficient, b.friction_coefficient, max_relative = 1e-7);
     }
 }
 
@@ -177,6 +179,67 @@ fn a_strongly_sheared_block_has_the_friction_of_other_codes() {
         solution.friction_coefficient
     );
     assert!(solution.shear > 1.0);
+}
+
+/// One wave at large pressures, in less than a hundred Newton steps from scratch: friction of another
+/// code of the same equations, which converged to 1e-3 between 64 and 128 columns; the heat of the
+/// branches on 96 columns.
+#[test]
+fn large_pressures_are_solved_whatever_the_shear() {
+    let amplitude = shortest_wave().amplitude;
+    let expected = [
+        (0.01, [(8.07e6, 0.4483), (1.2e7, 0.3887), (1.8e7, 0.3321), (2.5e7, 0.2957)].as_slice()),
+        (0.05, [(8e6, 0.5539), (1.6e7, 0.4308), (2.5e7, 0.3626)].as_slice()),
+    ];
+    for (speed, points) in expected {
+        for (pressure, friction) in points {
+            let [coarse, fine] = [64, 96].map(|columns| {
+                contact(&table_2_1(), speed, amplitude, BlockOptions::new(columns))
+                    .solve(*pressure)
+                    .unwrap()
+            });
+            for solution in [&coarse, &fine] {
+                assert_solved(solution);
+                assert!(solution.newton_steps < 100, "{}", solution.newton_steps);
+            }
+            let [coarse, fine, heat] =
+                [coarse.friction_coefficient, fine.friction_coefficient, fine.hysteretic_friction];
+            assert_relative_eq!(coarse, fine, max_relative = 2e-3);
+            assert_relative_eq!(fine, *friction, max_relative = 1e-3);
+            assert_relative_eq!(heat, fine, max_relative = 7e-3);
+        }
+    }
+}
+
+/// The columns stand above their points of the profile: a shear of 6 slants no element.
+#[test]
+fn contact_nodes_stand_at_equal_distances_however_large_the_shear() {
+    let amplitude = shortest_wave().amplitude;
+    let solution =
+        contact(&table_2_1(), 0.05, amplitude, BlockOptions::new(64)).solve(2.5e7).unwrap();
+    assert!(solution.shear > 6.0, "{}", solution.shear);
+    for (j, node) in solution.nodes.iter().enumerate() {
+        assert_relative_eq!(node.x, j as f64 * PERIOD / 64.0, epsilon = 1e-15);
+    }
+}
+
+/// Rows that coarsen with depth change friction and heat by less than a thousandth, and the area by what
+/// is left of a node's force at its edges.
+#[test]
+fn coarsening_rows_change_little() {
+    let amplitude = shortest_wave().amplitude;
+    let [uniform, coarsened] = [false, true].map(|coarsening| {
+        let options = BlockOptions { coarsening, ..BlockOptions::new(256) };
+        contact(&table_2_1(), 0.01, amplitude, options).solve(2e6).unwrap()
+    });
+    let area = |solution: &SteadySolution| solution.contact_area_fraction;
+    for (a, b, tolerance) in [
+        (uniform.friction_coefficient, coarsened.friction_coefficient, 1e-3),
+        (uniform.hysteretic_friction, coarsened.hysteretic_friction, 1e-3),
+        (area(&uniform), area(&coarsened), 5e-3),
+    ] {
+        assert_relative_eq!(a, b, max_relative = tolerance);
+    }
 }
 
 #[test]

@@ -7,10 +7,10 @@ use crate::fem::profile::RigidProfile;
 /// Columns on the shortest wave without --columns: friction is then within about half a percent
 /// of the limit for usual areas.
 const DEFAULT_COLUMNS_PER_WAVE: f64 = 64.0;
-/// More columns than this are not chosen for a user: what took a minute with 1024 takes hours.
-pub(super) const MOST_DEFAULT_COLUMNS: usize = 4096;
+/// More columns than this are not chosen for a user: they are minutes and gigabytes.
+pub(super) const MOST_DEFAULT_COLUMNS: usize = 8192;
 /// From here on a contact takes minutes.
-const MANY_COLUMNS: usize = 1024;
+const MANY_COLUMNS: usize = 4096;
 /// Fewer columns on the shortest wave leave contacts of one or two nodes, whose friction is
 /// that of the mesh.
 pub(super) const LEAST_COLUMNS_PER_WAVE: f64 = 8.0;
@@ -35,8 +35,8 @@ pub(super) fn usual_columns(profile: &RigidProfile) -> Result<usize, CliError> {
     }
     Err(CliError::input(format!(
         "the period is {} mm long and holds {waves} of the shortest waves: \
-         {DEFAULT_COLUMNS_PER_WAVE} columns on each are {columns}, of which hours would not solve a \
-         contact; choose wavelengths whose ratios are simple fractions, leave out the shortest or \
+         {DEFAULT_COLUMNS_PER_WAVE} columns on each are {columns}, more than the {MOST_DEFAULT_COLUMNS} that \
+         are chosen without being asked for; choose wavelengths whose ratios are simple fractions, leave out the shortest or \
          the longest, or insist with --columns N",
         significant(profile.period() * 1e3)
     )))
@@ -77,7 +77,7 @@ pub(super) fn check(profile: &RigidProfile, columns: usize) -> Result<Vec<String
     }
     if columns >= MANY_COLUMNS {
         warnings.push(format!(
-            "the period of {} mm has {columns} columns: this takes minutes to hours",
+            "the period of {} mm has {columns} columns: this takes minutes",
             significant(profile.period() * 1e3)
         ));
     }

@@ -32,7 +32,7 @@ impl SteadyContact {
                 return Err(FemError::OutOfRange { quantity, value, range: "between 0 and 1" });
             }
         }
-        let mut guess = self.scene.first_pressure.ln();
+        let mut guess = self.setting.first_pressure(&self.profile).ln();
         let (mut lower, mut upper): (Option<End>, Option<End>) = (None, None);
         let mut previous = 0.0;
         let mut best: Option<(f64, SteadySolution)> = None;

@@ -1,25 +1,51 @@
 //! Steady sliding of a block of rubber over a rigid profile, at finite deformation.
 //!
-//! In the frame of the profile the field stands still: `x = X + v t + u(ξ, Z)` with
-//! `ξ = X + v t`, and the flow rule of a branch becomes `v dC_i/dξ = (C - C_i) / τ` along each row
-//! of the mesh, which [`super::filter`] solves for all points of a row at once. One Newton solve
-//! replaces the some thousand time steps after which a transient solution is steady.
+//! In the frame of the profile the field stands still, and the flow rule of a branch becomes
+//! `v dC_i/dξ = (C - C_i) / τ` along each material line, with the label `ξ = X + v t` of the rubber. One
+//! Newton solve replaces the some thousand time steps after which a transient solution is steady.
+//!
+//! The grid is fixed to the profile: its columns stand at equidistant `x = s`, its rows are material
+//! lines `Z`, and what is unknown is which rubber is there, `ξ = s - q(s, Z)`, and how high it lies,
+//! `z = Z + w(s, Z)`. This is the bilinear element with nodes that are moved in the undeformed block in
+//! place of in space. So contact nodes stay above their points of the profile, gaps and slopes are
+//! linear and constant, resolution follows the surface in space, and no shear, however large, slants an
+//! element. It needs a surface that is a graph over x.
+//!
+//! Elements are bilinear; their volumetric part is integrated at the centre alone (selective
+//! reduced integration), which keeps them from locking at ν = 0.49.
 //!
 //! | module | what it does |
 //! |---|---|
-//! | `path` | continuation: growing pressure, finer meshes, shifted rows |
-//! | `growth` | profiles of many scales: octaves that grow at constant pressure |
-//! | `newton` | one pressure on one mesh: barrier and active set, GMRES |
-//! | `state`, `transfer` | the unknown fields, and how they are taken to another mesh |
+//! | `grid` | rows of nodes and elements; fewer columns away from the contact |
+//! | `flow` | the flow rule along a row of unequally spaced labels |
+//! | `point`, `row`, `tangent`, `block` | internal forces and their tangent with relaxation history |
+//! | `contact` | force and gap of a node from one smooth unknown |
+//! | `local`, `stiffness` | the preconditioner: sparse factors of tangents with a short memory |
+//! | `level`, `newton` | the equations on one grid, and Newton's method with GMRES |
+//! | `path`, `transfer` | growing pressure, finer grids, from the barrier to the exact contact |
+//! | `growth`, `lift` | profiles of many scales: octaves that grow at constant pressure |
 //! | [`solution`] | friction, area, separation, dissipation and fields of a solved contact |
 //! | `area` | the pressure that gives a wanted contact area |
 
 mod area;
+mod block;
+mod contact;
+mod flow;
+mod grid;
 mod growth;
+mod level;
+mod lift;
+mod local;
 mod newton;
 mod path;
+mod point;
+mod row;
 pub mod solution;
 mod state;
+mod stiffness;
+mod tangent;
+#[cfg(test)]
+mod tests;
 mod transfer;
 
 use super::error::{FemError, PathEnd};
@@ -27,13 +53,21 @@ use super::mesh::{Grading, Mesh};
 use super::profile::RigidProfile;
 use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
-use newton::Stuck;
-use path::{Path, Scene};
+use flow::Relaxation;
+use level::Level;
+use path::Path;
+use row::Material;
 use solution::SteadySolution;
-use state::{Heights, State};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
+
+/// An element is inverted, or an internal tensor is not positive: forces do not exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Inverted;
+
+/// Newton's method or a path did not get there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct NotConverged;
 
 /// The block and its mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,13 +78,21 @@ pub struct BlockOptions {
     pub height_ratio: f64,
     /// Growth of the rows away from the contact.
     pub grading: Grading,
+    /// Whether rows that are flat against their height have half as many columns as those below.
+    pub coarsening: bool,
 }
 
 impl BlockOptions {
     /// The block of the thesis, of height 0.75 L, with square elements at the contact and rows
-    /// that grow by a fifth: friction then differs by 0.1 % from that of equally high rows.
+    /// that grow by a fifth: friction then differs by 0.1 % from that of equally high rows. From 256
+    /// columns on rows coarsen, which changes friction by 0.1 % and saves more than half of the elements.
     pub fn new(columns: usize) -> Self {
-        Self { columns, height_ratio: 0.75, grading: Grading { first: 1.0, growth: 1.2 } }
+        Self {
+            columns,
+            height_ratio: 0.75,
+            grading: Grading { first: 1.0, growth: 1.2 },
+            coarsening: columns >= MANY_COLUMNS,
+        }
     }
 
     /// The mesh of a block of one `period` in m, not skewed.
@@ -86,6 +128,8 @@ impl BlockOptions {
     }
 }
 
+/// Columns from which on rows coarsen by default.
+const MANY_COLUMNS: usize = 256;
 /// Columns for which a contact can be asked.
 pub const COLUMNS_RANGE: RangeInclusive<usize> = 8..=1 << 16;
 /// Block heights, in periods, for which a contact can be asked.
@@ -93,25 +137,21 @@ pub const HEIGHT_RANGE: RangeInclusive<f64> = 0.1..=10.0;
 
 /// Points of a path that ended whose contact is closed, from the last one back, before it is given up.
 const MOST_CLOSED: usize = 8;
-/// Shortest waves on the period up to which a path sets out from a slight contact of the highest tip:
-/// with three octaves that takes half the time of growth, with four twice, with more it ends early.
+/// Halvings of what lies between the last such point and the next one that is none.
+const MOST_HALVINGS: usize = 3;
+/// Shortest waves on the period up to which a path sets out from a slight contact of the highest tip.
 const MOST_WAVES_FROM_A_TIP: f64 = 4.0;
-/// Columns of the coarsest mesh on the shortest wave of the profile.
-const COARSEST_PER_WAVE: f64 = 24.0;
+/// Columns of the coarsest grid of a path on the shortest wave of the profile.
+const COARSEST_PER_WAVE: f64 = 40.0;
 /// Pressure of the first contact over the modulus at the shortest wave.
-const FIRST_PRESSURE: f64 = 5e-3;
-/// Ratio of the columns of neighbouring meshes. With twice the columns the small waves that a
-/// coarse mesh leaves between its nodes become stresses from which Newton's method does not
-/// recover.
-const REFINEMENT: f64 = 1.5;
+const FIRST_PRESSURE: f64 = 3e-2;
 
 /// A block of rubber that slides at constant speed over a rigid periodic profile: plane strain,
 /// finite linear viscoelasticity, frictionless contact. The upper edge carries the dead pressure
 /// `p` per undeformed length and moves as a whole; lateral edges are periodic.
 ///
 /// Solutions for further pressures go on from those found before, which saves most of the work;
-/// they agree with those from scratch within the residual, and where the rows happen to be shifted
-/// differently within the error of the mesh.
+/// they agree with those from scratch within the residual.
 ///
 /// ```
 /// use asperity::fem::profile::RigidProfile;
@@ -130,7 +170,7 @@ const REFINEMENT: f64 = 1.5;
 /// ```
 pub struct SteadyContact {
     setting: Setting,
-    scene: Arc<Scene>,
+    profile: RigidProfile,
     options: BlockOptions,
     path: Option<Path>,
 }
@@ -145,23 +185,20 @@ struct Setting {
 }
 
 impl Setting {
-    fn scene(&self, profile: RigidProfile, columns: usize) -> Scene {
-        let period = profile.period();
-        let modulus = |q: f64| self.rubber.reduced_modulus(q * self.speed).norm();
+    /// The rubber on a row of one period in m.
+    fn material(&self, period: f64) -> Material {
+        let length = |time: f64| Relaxation { length: self.speed * time, period };
         let branches = self.finite.branches.iter();
-        // One tip carries all; a contact of a few percent of the shortest wave.
+        let relaxations = branches.map(|branch| length(branch.relaxation_time)).collect();
+        Material { rubber: self.finite.clone(), relaxations }
+    }
+
+    /// A mean pressure in Pa at which the highest tip of a profile carries all, in a contact of a few
+    /// percent of the shortest wave.
+    fn first_pressure(&self, profile: &RigidProfile) -> f64 {
         let waves = profile.shortest_waves();
-        Scene {
-            rubber: self.finite.clone(),
-            relaxation_lengths: branches
-                .map(|branch| self.speed * branch.relaxation_time)
-                .collect(),
-            interrupt: self.interrupt.clone(),
-            heights: Heights::of(&profile, 8 * columns),
-            first_pressure: FIRST_PRESSURE * modulus(TAU * waves / period) / waves,
-            stiff_modulus: modulus(PI * columns as f64 / period),
-            profile,
-        }
+        let frequency = TAU * waves / profile.period() * self.speed;
+        FIRST_PRESSURE * self.rubber.reduced_modulus(frequency).norm() / waves
     }
 }
 
@@ -183,16 +220,17 @@ impl SteadyContact {
         options.check(profile.period())?;
         let interrupt = Interrupt::default();
         let setting = Setting { rubber: rubber.clone(), finite, speed, interrupt };
-        let scene = Arc::new(setting.scene(profile, options.columns));
-        Ok(Self { setting, scene, options, path: None })
+        Ok(Self { setting, profile, options, path: None })
     }
 
     /// With an interrupt that ends a solve between two Krylov iterations.
     #[must_use]
-    pub fn interruptible(self, interrupt: &Interrupt) -> Self {
-        let scene = Scene { interrupt: interrupt.clone(), ..(*self.scene).clone() };
-        let setting = Setting { interrupt: interrupt.clone(), ..self.setting };
-        Self { setting, scene: Arc::new(scene), ..self }
+    pub fn interruptible(mut self, interrupt: &Interrupt) -> Self {
+        self.setting.interrupt = interrupt.clone();
+        if let Some(path) = &mut self.path {
+            path.level.interrupt = interrupt.clone();
+        }
+        self
     }
 
     /// The contact at the mean pressure `p` in Pa.
@@ -201,15 +239,6 @@ impl SteadyContact {
     /// [`FemError::OutOfRange`] for a pressure that is not positive and finite;
     /// [`FemError::PathEnded`] with the last point that converged; [`FemError::Interrupted`].
     pub fn solve(&mut self, pressure: f64) -> Result<SteadySolution, FemError> {
-        let solved = self.solve_on_a_path(pressure);
-        // Behind an interrupt every path ends.
-        if solved.is_err() && self.setting.interrupt.is_set() {
-            return Err(FemError::Interrupted);
-        }
-        solved
-    }
-
-    fn solve_on_a_path(&mut self, pressure: f64) -> Result<SteadySolution, FemError> {
         if !(pressure > 0.0 && pressure.is_finite()) {
             return Err(FemError::OutOfRange {
                 quantity: "the mean pressure in Pa",
@@ -217,124 +246,167 @@ impl SteadyContact {
                 range: "positive and finite",
             });
         }
-        if let Some(path) = &mut self.path
-            && let Some(exact) = path.finish_nearby(pressure)
-        {
-            return Ok(read(path, exact, &self.scene, self.setting.speed, pressure));
-        }
-        if let Some(solution) = self.go_on(pressure) {
-            return Ok(solution);
-        }
-        // Another path may get there: which one ends depends on its steps.
-        let known = self.path.take();
-        if let Some(solution) = self.set_out(pressure) {
-            return Ok(solution);
-        }
-        self.path = known.or(self.path.take());
-        let ended = |reached| FemError::PathEnded {
-            wanted: pressure,
-            columns: self.options.columns,
-            reached,
-        };
-        let Some(path) = &mut self.path else { return Err(ended(PathEnd::NotStarted)) };
-        match last_converged(path, &self.scene, self.setting.speed) {
-            // What failed at first may succeed at the second attempt: rows are shifted on in parts.
-            Some(solution) if solution.mean_pressure == pressure => Ok(solution),
-            Some(solution) => Err(ended(PathEnd::At {
-                pressure: solution.mean_pressure,
-                friction_coefficient: solution.friction_coefficient,
-                contact_area_fraction: solution.contact_area_fraction,
-            })),
-            None => Err(ended(PathEnd::NotStarted)),
+        let solved = self.go_on(pressure).or_else(|NotConverged| self.set_out(pressure));
+        match solved {
+            Ok(solution) => Ok(solution),
+            // Behind an interrupt every path ends.
+            Err(_) if self.setting.interrupt.is_set() => Err(FemError::Interrupted),
+            Err(ended) => {
+                let reached = self.last_converged(ended);
+                if self.setting.interrupt.is_set() {
+                    return Err(FemError::Interrupted);
+                }
+                Err(FemError::PathEnded {
+                    wanted: pressure,
+                    columns: self.options.columns,
+                    reached,
+                })
+            }
         }
     }
 
     /// The solution at a pressure from the points passed before, if there are any.
-    fn go_on(&mut self, pressure: f64) -> Option<SteadySolution> {
-        let path = self.path.as_mut()?;
+    fn go_on(&mut self, pressure: f64) -> Result<SteadySolution, NotConverged> {
+        let path = self.path.as_mut().ok_or(NotConverged)?;
         path.return_towards(pressure);
-        path.advance_to(pressure).ok()?;
-        conclude(path, &self.scene, self.setting.speed).ok()
+        path.advance_to(pressure)?;
+        self.conclude()
     }
 
-    /// The solution on a new path, from a slight contact on the coarsest mesh to the finest one, or
-    /// for a profile of many scales from its longest waves to the shortest; the path stays where it
-    /// ends.
-    fn set_out(&mut self, pressure: f64) -> Option<SteadySolution> {
-        if self.scene.profile.shortest_waves() > MOST_WAVES_FROM_A_TIP {
-            let profile = &self.scene.profile;
-            self.path = growth::grow(&self.setting, profile, self.options, pressure).ok();
-            return conclude(self.path.as_mut()?, &self.scene, self.setting.speed).ok();
-        }
-        let mut path: Option<Path> = None;
-        let mut arrived = Err(Stuck);
-        for mesh in self.meshes() {
-            if self.setting.interrupt.is_set() {
-                return None;
+    /// The solution on a new path: from a slight contact on the coarsest grid to the finest one, or
+    /// for a profile of many scales from its longest waves to the shortest. Where it fails, the path is
+    /// where it ended, and what was known before is kept if it went further.
+    fn set_out(&mut self, pressure: f64) -> Result<SteadySolution, Option<Path>> {
+        let known = self.path.take();
+        let arrived = if self.profile.shortest_waves() > MOST_WAVES_FROM_A_TIP {
+            growth::grow(&self.setting, &self.profile, self.options, pressure)
+                .map(|path| self.path = Some(path))
+        } else {
+            self.climb(pressure)
+        };
+        match arrived.and_then(|()| self.conclude()) {
+            Ok(solution) => Ok(solution),
+            Err(NotConverged) => {
+                let ended = self.path.take();
+                self.path = known;
+                Err(ended)
             }
-            let entered = match &mut path {
-                Some(path) => path.refine(&mesh),
-                None => Err(Stuck),
+        }
+    }
+
+    /// A path in pressure; a grid on which it ends hands on what it has reached to the next one.
+    fn climb(&mut self, pressure: f64) -> Result<(), NotConverged> {
+        let first = self.setting.first_pressure(&self.profile).min(pressure);
+        let mut arrived = Err(NotConverged);
+        for columns in self.columns() {
+            let level = || {
+                let options = BlockOptions { columns, ..self.options };
+                Level::new(&self.setting, &options, &self.profile)
             };
-            if entered.is_err() {
-                path = Path::start(&self.scene, mesh, pressure).ok();
+            let entered = match &mut self.path {
+                Some(path) => path.refine(level()),
+                None => Err(NotConverged),
+            };
+            if self.setting.interrupt.is_set() {
+                return Err(NotConverged);
             }
-            // A coarse mesh may fail where a finer one does not.
-            arrived = path.as_mut().map_or(Err(Stuck), |path| path.advance_to(pressure));
+            if entered.is_err() {
+                match Path::start(level(), first) {
+                    Ok(path) => self.path = Some(path),
+                    Err(NotConverged) => continue,
+                }
+            }
+            arrived =
+                self.path.as_mut().map_or(Err(NotConverged), |path| path.advance_to(pressure));
         }
-        self.path = path;
-        arrived.ok()?;
-        conclude(self.path.as_mut()?, &self.scene, self.setting.speed).ok()
+        arrived
     }
 
-    /// From the coarsest to the wanted mesh.
-    fn meshes(&self) -> Vec<Mesh> {
-        let period = self.scene.profile.period();
-        let least = COARSEST_PER_WAVE * self.scene.profile.shortest_waves();
+    /// Columns of the grids of a path, the coarsest first.
+    fn columns(&self) -> Vec<usize> {
+        let least = COARSEST_PER_WAVE * self.profile.shortest_waves();
         let mut columns = vec![self.options.columns];
         while let Some(finer) = columns.last()
-            && *finer as f64 / REFINEMENT >= least
+            && *finer as f64 / 2.0 >= least
         {
-            columns.push((*finer as f64 / REFINEMENT).round() as usize);
+            columns.push(finer / 2);
         }
-        let mesh = |columns| BlockOptions { columns, ..self.options }.mesh(period);
-        columns.into_iter().rev().map(mesh).collect()
+        columns.reverse();
+        columns
+    }
+
+    /// The exact solution at the point the path has reached, with all that was spent since the last
+    /// one.
+    fn conclude(&mut self) -> Result<SteadySolution, NotConverged> {
+        let path = self.path.as_mut().ok_or(NotConverged)?;
+        conclude(path, self.setting.speed)
+    }
+
+    /// The highest point at which the contact converges, of the path that ended or of what was known
+    /// before.
+    fn last_converged(&mut self, ended: Option<Path>) -> PathEnd {
+        let speed = self.setting.speed;
+        let mut reached: Option<SteadySolution> = None;
+        for path in ended.into_iter().chain(self.path.take()) {
+            let Some((path, solution)) = last_converged(path, speed) else { continue };
+            if reached.as_ref().is_none_or(|best| best.mean_pressure < solution.mean_pressure) {
+                reached = Some(solution);
+            }
+            if path.level.grid().contact_nodes() == self.options.columns {
+                self.path = Some(path);
+            }
+        }
+        reached.map_or(PathEnd::NotStarted, |solution| PathEnd::At {
+            pressure: solution.mean_pressure,
+            friction_coefficient: solution.friction_coefficient,
+            contact_area_fraction: solution.contact_area_fraction,
+        })
     }
 }
 
-/// The exact solution at the point a path has reached.
-fn conclude(path: &mut Path, scene: &Scene, speed: f64) -> Result<SteadySolution, Stuck> {
-    let exact = path.finish()?;
-    let pressure = path.pressure;
-    Ok(read(path, exact, scene, speed, pressure))
-}
-
-/// What an exact state and its residual say, with all that was spent since the last one.
-fn read(
-    path: &mut Path,
-    (state, residual): (State, f64),
-    scene: &Scene,
-    speed: f64,
-    pressure: f64,
-) -> SteadySolution {
-    let solution = SteadySolution::read(&state, path.level(), scene, speed, pressure, residual);
+fn conclude(path: &mut Path, speed: f64) -> Result<SteadySolution, NotConverged> {
+    let (state, residual) = path.finish()?;
+    let solution = SteadySolution::read(&path.level, &state, speed, residual);
     let cost = path.take_cost();
-    SteadySolution {
+    Ok(SteadySolution {
         newton_steps: cost.newton_steps,
         krylov_iterations: cost.krylov_iterations,
         ..solution
-    }
+    })
 }
 
-/// The exact solution at the highest point of a path at which it converges.
-fn last_converged(path: &mut Path, scene: &Scene, speed: f64) -> Option<SteadySolution> {
+/// The exact solution at the last point of a path at which it converges, with the path there.
+fn last_converged(mut path: Path, speed: f64) -> Option<(Path, SteadySolution)> {
+    let mut beyond = None;
     for _ in 0..MOST_CLOSED {
-        if let Ok(solution) = conclude(path, scene, speed) {
-            return Some(solution);
+        if let Ok(solution) = conclude(&mut path, speed) {
+            let last = match beyond {
+                Some(beyond) => last_before(&mut path, solution, beyond, speed),
+                None => solution,
+            };
+            return Some((path, last));
         }
+        beyond = Some(path.state.pressure);
         path.step_back()?;
     }
     None
+}
+
+/// Looks for a later exact solution than the one at the path, before a pressure at which there is none.
+fn last_before(
+    path: &mut Path,
+    mut last: SteadySolution,
+    mut beyond: f64,
+    speed: f64,
+) -> SteadySolution {
+    for _ in 0..MOST_HALVINGS {
+        let (state, middle) = (path.state.clone(), (last.mean_pressure * beyond).sqrt());
+        match path.jump_to(middle).and_then(|()| conclude(path, speed)) {
+            Ok(solution) => last = solution,
+            Err(NotConverged) => (path.state, beyond) = (state, middle),
+        }
+    }
+    last
 }
 
 fn check_speed(speed: f64) -> Result<(), FemError> {
@@ -343,31 +415,4 @@ fn check_speed(speed: f64) -> Result<(), FemError> {
     }
     let (quantity, range) = ("the speed in m/s", "positive and finite");
     Err(FemError::OutOfRange { quantity, value: speed, range })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::surface::Wave;
-    use std::time::{Duration, Instant};
-
-    #[test]
-    fn an_interrupt_ends_a_solve_and_is_no_end_of_a_path() {
-        let wave = Wave { wavelength: 6.25e-5, amplitude: 1.867e-5, phase: 0.0 };
-        let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
-        let (rubber, law) = (Rubber::table_2_1(), Rheology::NeoHookean);
-        let interrupt = Interrupt::default();
-        let mut contact = SteadyContact::new(&rubber, law, 0.01, profile, BlockOptions::new(1024))
-            .unwrap()
-            .interruptible(&interrupt);
-        let user = std::thread::spawn(move || {
-            std::thread::sleep(Duration::from_millis(500));
-            interrupt.set();
-            Instant::now()
-        });
-        assert_eq!(contact.solve(3e6).err(), Some(FemError::Interrupted));
-        let heard = user.join().unwrap().elapsed();
-        assert!(heard < Duration::from_secs(10), "{heard:?}");
-        assert_eq!(contact.solve(3e5).err(), Some(FemError::Interrupted));
-    }
 }

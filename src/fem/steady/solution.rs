@@ -1,7 +1,6 @@
 //! A solved contact and what is read from it.
 
-use super::newton::Level;
-use super::path::Scene;
+use super::level::Level;
 use super::state::State;
 
 /// The steady contact at one mean pressure.
@@ -21,10 +20,10 @@ pub struct SteadySolution {
     pub mean_separation: f64,
     /// Mean shear of the block.
     pub shear: f64,
-    /// Euclidean norm of the unbalanced nodal forces over that of the contact forces, or the
-    /// largest violated gap over the height of the profile, whichever is more.
+    /// Root mean square, over the contact nodes, of the unbalanced nodal forces, over the mean contact
+    /// force. Gaps are met exactly.
     pub residual: f64,
-    /// Newton steps on all meshes since the solution before.
+    /// Newton steps on all grids, those of failed attempts among them, since the solution before.
     pub newton_steps: usize,
     /// Applications of the tangent since the solution before.
     pub krylov_iterations: usize,
@@ -41,67 +40,45 @@ pub struct ContactNode {
     pub x: f64,
     /// Height of the profile there in m, about its mean.
     pub profile_height: f64,
-    /// Normal pressure in Pa on the deformed surface.
+    /// Normal pressure in Pa on the deformed surface, which is the vertical force over the length along x.
     pub pressure: f64,
     /// Vertical gap in m.
     pub separation: f64,
 }
 
 impl SteadySolution {
-    pub(super) fn read(
-        state: &State,
-        level: &Level,
-        scene: &Scene,
-        speed: f64,
-        pressure: f64,
-        residual: f64,
-    ) -> Self {
-        let mesh = level.block.mesh();
-        let n = mesh.columns;
-        let xs: Vec<f64> =
-            (0..n).map(|j| j as f64 * mesh.spacing() + state.displacements[2 * j]).collect();
-        // Distance to the next node along x.
-        let step = |j: usize| {
-            let wrap = if j + 1 == n { mesh.period } else { 0.0 };
-            xs[(j + 1) % n] + wrap - xs[j]
-        };
-        let profile: Vec<_> = xs.iter().map(|x| scene.profile.at(*x)).collect();
-        let load: f64 = state.forces.iter().sum();
-        let traction: f64 = state.forces.iter().zip(&profile).map(|(f, at)| f * at.slope).sum();
+    /// Reads an exact state; the block of the level must be at it.
+    pub(super) fn read(level: &Level, state: &State, speed: f64, residual: f64) -> Self {
+        let grid = level.grid();
+        let (n, spacing) = (grid.contact_nodes(), grid.spacing(0));
+        let (pairs, surface) = (level.pairs(state, 0.0), &level.surface);
+        let load: f64 = pairs.forces.iter().sum();
+        let traction: f64 = pairs.forces.iter().zip(&surface.slopes).map(|(f, h)| f * h).sum();
         let nodes: Vec<ContactNode> = (0..n)
             .map(|j| ContactNode {
-                x: xs[j],
-                profile_height: profile[j].height - scene.heights.mean,
-                pressure: state.forces[j] / (0.5 * (step((j + n - 1) % n) + step(j))),
-                separation: state.gaps[j],
+                x: j as f64 * spacing,
+                profile_height: surface.heights[j] - surface.scale.mean,
+                pressure: pairs.forces[j] / spacing,
+                separation: pairs.gaps[j],
             })
             .collect();
-        let area: f64 = (0..n)
-            .map(|j| {
-                let before = touching_part(&state.forces, j, n - 1);
-                let after = touching_part(&state.forces, j, 1);
-                before * step((j + n - 1) % n) + after * step(j)
-            })
+        let touching: f64 = (0..n)
+            .map(|j| touching_part(&pairs.forces, j, n - 1) + touching_part(&pairs.forces, j, 1))
             .sum();
-        let mean_height: f64 = (0..n)
-            .map(|j| {
-                let z = |j: usize| state.displacements[2 * (j % n) + 1];
-                0.5 * (z(j) + z(j + 1)) * step(j)
-            })
-            .sum::<f64>()
-            / mesh.period;
+        let heights = surface.heights.iter().zip(&pairs.gaps).map(|(z, gap)| z + gap);
+        let mean_height = heights.sum::<f64>() / n as f64;
         let power = level.block.dissipation(&state.displacements);
         Self {
-            mean_pressure: pressure,
+            mean_pressure: state.pressure,
             friction_coefficient: traction / load,
             hysteretic_friction: power / (load * speed),
-            contact_area_fraction: area / mesh.period,
-            mean_separation: mean_height - scene.heights.mean,
-            shear: state.shear(mesh),
+            contact_area_fraction: touching / n as f64,
+            mean_separation: mean_height - surface.scale.mean,
+            shear: state.shear(grid),
             residual,
             newton_steps: 0,
             krylov_iterations: 0,
-            elements: [n, mesh.rows()],
+            elements: [n, grid.rows()],
             nodes,
         }
     }

@@ -1,47 +1,32 @@
 //! The unknown fields of the steady problem.
 
-use super::super::mesh::Mesh;
 use super::super::profile::RigidProfile;
+use super::grid::Grid;
 
-/// Displacements of the nodes, forces and gaps of the contact nodes.
+/// A block over the profile at one pressure.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct State {
-    /// Displacements in m, as [`crate::fem::block::Block`] has them.
+    /// Displacements in m of all nodes, `(x, z)` of each together; z of a contact node follows from
+    /// its gap.
     pub displacements: Vec<f64>,
-    /// Vertical contact force in N/m on each contact node, not negative.
-    pub forces: Vec<f64>,
-    /// Vertical gap in m under each contact node, not negative.
-    pub gaps: Vec<f64>,
+    /// The unknown τ in m of each contact node.
+    pub contact: Vec<f64>,
+    /// Mean pressure in Pa.
+    pub pressure: f64,
 }
 
 impl State {
-    /// An undeformed block above the profile under a small `pressure` in Pa, as high as the
-    /// `barrier` in m carries it: `Σ_j barrier / gap_j = N`.
-    pub fn above(mesh: &Mesh, profile: &RigidProfile, pressure: f64, barrier: f64) -> Self {
-        let heights = profile.sample(mesh.columns);
-        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let carried = |clearance: f64| {
-            heights.iter().map(|z| barrier / (highest - z + clearance)).sum::<f64>()
-        };
-        // The highest node alone carries at least its share, all together no more than that.
-        let wanted = mesh.columns as f64;
-        let (mut low, mut high) = (barrier / wanted, barrier);
-        while high / low > 1.0 + 1e-12 {
-            let middle = (low * high).sqrt();
-            if carried(middle) > wanted { low = middle } else { high = middle }
-        }
-        let lift = highest + high;
-        let mut displacements = vec![0.0; 2 * mesh.columns * (mesh.rows() + 1)];
-        displacements.iter_mut().skip(1).step_by(2).for_each(|z| *z = lift);
-        let gaps: Vec<f64> = heights.iter().map(|z| lift - z).collect();
-        let force = barrier * pressure * mesh.spacing();
-        let forces = gaps.iter().map(|gap| force / gap).collect();
-        Self { displacements, forces, gaps }
+    /// Whether the nodes touch the profile, without a barrier.
+    pub fn touching(&self) -> Vec<bool> {
+        self.contact.iter().map(|tau| *tau > 0.0).collect()
     }
 
-    /// Mean shear of the block: the displacement of the upper edge over its height.
-    pub fn shear(&self, mesh: &Mesh) -> f64 {
-        self.displacements[2 * mesh.columns * mesh.rows()] / mesh.height()
+    /// Mean shear of the block: the displacement of the upper edge against the contact, over the
+    /// height.
+    pub fn shear(&self, grid: &Grid) -> f64 {
+        let contact = grid.row(&self.displacements, 0);
+        let mean = contact.iter().step_by(2).sum::<f64>() / grid.contact_nodes() as f64;
+        -mean / grid.height()
     }
 }
 

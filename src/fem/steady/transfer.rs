@@ -1,36 +1,39 @@
-//! Taking a state to another mesh.
+//! Taking a state to another grid of the same block.
 
-use super::super::mesh::Mesh;
+use super::level::Level;
 use super::state::State;
 
-/// The state on another mesh of the same block: displacements by cubics along and across
-/// the rows, forces per length and gaps of the contact nodes likewise.
-pub(super) fn transfer(state: &State, from: &Mesh, to: &Mesh) -> State {
-    let (old, new) = (from.node_heights(), to.node_heights());
-    let mut displacements = Vec::with_capacity(2 * to.columns * new.len());
-    for height in &new {
-        let rows = stencil(&old, *height);
-        for column in 0..to.columns {
-            let position = column as f64 * to.spacing() + to.skew * height;
+/// The state on another grid: displacements by cubics along and across the rows, forces per length and
+/// gaps of the contact nodes by straight lines, which keep them positive.
+pub(super) fn transfer(state: &State, barrier: f64, from: &Level, to: &Level) -> State {
+    let (old, new) = (from.grid(), to.grid());
+    let mut displacements = Vec::with_capacity(2 * new.nodes());
+    for (row, height) in new.levels.iter().enumerate() {
+        let rows = stencil(&old.levels, *height);
+        let columns = new.nodes_in(row);
+        for column in 0..columns {
+            let position = column as f64 / columns as f64;
             for component in 0..2 {
                 let along = |r: usize| {
-                    let place = (position - from.skew * old[r]) / from.spacing();
-                    let value =
-                        |j: usize| state.displacements[2 * (r * from.columns + j) + component];
-                    cubic(from.columns, place, value)
+                    let nodes = old.row(&state.displacements, r);
+                    let count = old.nodes_in(r);
+                    cubic(count, position * count as f64, |j| nodes[2 * j + component])
                 };
                 displacements.push(rows.iter().map(|(r, weight)| weight * along(*r)).sum());
             }
         }
     }
-    let ratio = to.spacing() / from.spacing();
-    let place = |column: usize| column as f64 * ratio;
-    // Straight lines keep forces and gaps positive.
-    let forces = (0..to.columns)
-        .map(|j| ratio * linear(from.columns, place(j), |j| state.forces[j]))
-        .collect();
-    let gaps = (0..to.columns).map(|j| linear(from.columns, place(j), |j| state.gaps[j])).collect();
-    State { displacements, forces, gaps }
+    let upper = to.upper_edge();
+    displacements[upper].iter_mut().step_by(2).for_each(|x| *x = 0.0);
+    let pairs = from.pairs(state, barrier);
+    let (coarse, fine) = (old.contact_nodes(), new.contact_nodes());
+    let ratio = coarse as f64 / fine as f64;
+    let unknown = |j: usize| {
+        let force = linear(coarse, j as f64 * ratio, |j| pairs.forces[j]);
+        let gap = linear(coarse, j as f64 * ratio, |j| pairs.gaps[j]);
+        to.unknown(ratio * force, gap)
+    };
+    State { displacements, contact: (0..fine).map(unknown).collect(), pressure: state.pressure }
 }
 
 /// The rows around a height and their weights in the polynomial through them (Lagrange); a row

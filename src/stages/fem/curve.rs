@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Revision of the solver: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 3;
+const SOLVER_REVISION: u32 = 4;
 
 /// The curve of one surface at one speed.
 pub(crate) struct CurveResult {

@@ -1,0 +1,242 @@
+//! Deformation, stress and linearised law at one integration point.
+//!
+//! With the labels `(s, Z)` of the module, `q` and `w` the displacements along x and z,
+//!
+//! ```text
+//! A = 1 - q_s,  B = -q_Z,  P = w_s,  Q = 1 + w_Z
+//! F = [[1/A, -B/A], [P/A, Q - P B/A]],   det F = Q/A
+//! ```
+//!
+//! so an element is valid where `A > 0` and `Q > 0`, two linear conditions.
+
+use super::super::kinematics::{Tensor, green_strain, strain_change};
+use super::Inverted;
+use crate::rubber::finite_strain::{
+    FiniteStrainRubber, IDENTITY, Measure, Rheology, Spring, Symmetric, contract, dilatation,
+    inverse, one_plus, sandwich,
+};
+
+/// Smallest `A` and `Q` of an element that is taken for valid.
+const LEAST: f64 = 1e-3;
+
+/// Deformation and stress at a point, and the coefficients of its own measure in the linearised law:
+///
+/// ```text
+/// shear       δT = μ G δm G - Σ_k μ_k G_k δm_k G_k
+/// volumetric  δT = (c G:δm - Σ_k c_k G_k:δm_k) G - σ G δm G
+/// ```
+///
+/// with `G = C⁻¹` and `G_k = C_k⁻¹` under neo-Hooke; under the linear law both are unit tensors and
+/// σ vanishes. Coefficients are in single precision: they make directions, not solutions.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Point {
+    /// A and B.
+    pub label: [f64; 2],
+    pub deformation: Tensor,
+    /// S.
+    pub stress: Symmetric,
+    /// G.
+    pub metric: [f32; 3],
+    /// μ or c.
+    pub modulus: f32,
+    /// σ.
+    pub pressure: f32,
+}
+
+/// A branch at a point: its part in the linearised law and the flow rule up to the point.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Memory {
+    /// `G_k`.
+    pub metric: [f32; 3],
+    /// `μ_k` or `c_k`.
+    pub modulus: f32,
+    /// `1 - e^{-a}`: what is forgotten from the point before.
+    pub forgotten: f32,
+    /// Weights of the measures at `n-2` to `n+1`.
+    pub weights: [f32; 4],
+    /// Change of the internal measure by that of the distance from the point before, in 1/m.
+    pub source: [f32; 3],
+}
+
+#[inline]
+pub(super) fn wide<const N: usize>(values: &[f32; N]) -> [f64; N] {
+    values.map(f64::from)
+}
+
+#[inline]
+pub(super) fn narrow<const N: usize>(values: &[f64; N]) -> [f32; N] {
+    values.map(|value| value as f32)
+}
+
+impl Point {
+    /// Takes over the gradient `(q_s, q_Z, w_s, w_Z)`; returns the strain `C - 1`, which keeps the
+    /// digits of small strains.
+    #[inline]
+    pub fn deform(&mut self, gradient: &Tensor) -> Result<Symmetric, Inverted> {
+        let [q_s, q_z, w_s, w_z] = *gradient;
+        let (a, height) = (1.0 - q_s, 1.0 + w_z);
+        if !(a > LEAST && height > LEAST) {
+            return Err(Inverted);
+        }
+        let h = [q_s / a, q_z / a, w_s / a, w_z + w_s * q_z / a];
+        self.label = [a, -q_z];
+        self.deformation = [1.0 + h[0], h[1], h[2], 1.0 + h[3]];
+        Ok(green_strain(&h))
+    }
+
+    /// det F.
+    #[inline]
+    pub fn volume(&self) -> f64 {
+        let f = &self.deformation;
+        f[0] * f[3] - f[1] * f[2]
+    }
+
+    /// Change of the deformation gradient by that of the gradient `(q_s, q_Z, w_s, w_Z)`.
+    #[inline]
+    pub fn deformation_change(&self, gradient: &Tensor) -> Tensor {
+        let [a, b] = self.label;
+        let f = &self.deformation;
+        let [q_s, q_z, w_s, w_z] = *gradient;
+        let along = [f[0] * q_s / a, (w_s + f[2] * q_s) / a];
+        [along[0], f[0] * q_z - along[0] * b, along[1], w_z + f[2] * q_z - along[1] * b]
+    }
+
+    /// Change of C by that of the deformation gradient.
+    #[inline]
+    pub fn strain_change(&self, df: &Tensor) -> Symmetric {
+        strain_change(&self.deformation, df)
+    }
+
+    /// Change of the stress that the point's own measure makes, if no branch followed.
+    #[inline]
+    pub fn own_stress(&self, volumetric: bool, measure: &Symmetric) -> Symmetric {
+        let metric = wide(&self.metric);
+        let congruent = sandwich(&metric, measure);
+        if volumetric {
+            let pressure = f64::from(self.modulus) * contract(&metric, measure);
+            let own = f64::from(self.pressure);
+            [0, 1, 2].map(|i| pressure * metric[i] - own * congruent[i])
+        } else {
+            congruent.map(|s| f64::from(self.modulus) * s)
+        }
+    }
+
+    /// `P = F S` in xX, xZ, zX, zZ.
+    #[inline]
+    pub fn first_stress(f: &Tensor, s: &Symmetric) -> Tensor {
+        [
+            f[0] * s[0] + f[1] * s[2],
+            f[0] * s[2] + f[1] * s[1],
+            f[2] * s[0] + f[3] * s[2],
+            f[2] * s[2] + f[3] * s[1],
+        ]
+    }
+}
+
+impl Memory {
+    /// Change of the stress by that of the internal measure.
+    #[inline]
+    pub fn stress(&self, volumetric: bool, point: &Point, change: &Symmetric) -> Symmetric {
+        let (metric, modulus) = (wide(&self.metric), f64::from(self.modulus));
+        if volumetric {
+            let pressure = modulus * contract(&metric, change);
+            wide(&point.metric).map(|g| -pressure * g)
+        } else {
+            sandwich(&metric, change).map(|s| -modulus * s)
+        }
+    }
+}
+
+/// The law of the shear or of the volumetric part at a measure; the sum over springs is in `stress`.
+pub(super) struct Law<'a> {
+    pub rubber: &'a FiniteStrainRubber,
+    pub volumetric: bool,
+}
+
+impl Law<'_> {
+    /// Stress and coefficients of the equilibrium spring.
+    #[inline]
+    pub fn equilibrium(
+        &self,
+        point: &mut Point,
+        measure: &Symmetric,
+    ) -> Result<Symmetric, Inverted> {
+        let spring = &self.rubber.equilibrium;
+        let (metric, volume) = metric(self.rubber.rheology, measure)?;
+        point.metric = narrow(&metric);
+        point.modulus = self.modulus(spring, volume) as f32;
+        point.pressure = self.pressure(spring, volume) as f32;
+        Ok(self.stress(spring, measure, &[0.0; 3]))
+    }
+
+    /// Adds stress and coefficients of a branch with the internal measure `internal`.
+    #[inline]
+    pub fn branch(
+        &self,
+        spring: &Spring,
+        point: &mut Point,
+        memory: &mut Memory,
+        [measure, internal]: [&Symmetric; 2],
+        stress: &mut Symmetric,
+    ) -> Result<(), Inverted> {
+        let (metric, past) = metric(self.rubber.rheology, internal)?;
+        let volume = match self.rubber.rheology {
+            Rheology::NeoHookean => (1.0 + dilatation(measure)) / past,
+            Rheology::Linear => 1.0,
+        };
+        memory.metric = narrow(&metric);
+        memory.modulus = self.modulus(spring, volume) as f32;
+        point.modulus += memory.modulus;
+        point.pressure += self.pressure(spring, volume) as f32;
+        let part = self.stress(spring, measure, internal);
+        (0..3).for_each(|i| stress[i] += part[i]);
+        Ok(())
+    }
+
+    fn stress(&self, spring: &Spring, measure: &Symmetric, internal: &Symmetric) -> Symmetric {
+        if self.volumetric {
+            self.rubber.volumetric_stress(spring, measure, internal)
+        } else {
+            self.rubber.shear_stress(spring, measure, internal)
+        }
+    }
+
+    fn modulus(&self, spring: &Spring, volume: f64) -> f64 {
+        if self.volumetric { 0.5 * spring.volumetric * volume } else { spring.shear }
+    }
+
+    fn pressure(&self, spring: &Spring, volume: f64) -> f64 {
+        if self.volumetric { 0.5 * spring.volumetric * (volume - 1.0) } else { 0.0 }
+    }
+}
+
+/// `G` and the determinant of `1 + measure`, which must be positive definite; of the linear law,
+/// unit tensor and 1.
+#[inline]
+fn metric(rheology: Rheology, measure: &Symmetric) -> Result<(Symmetric, f64), Inverted> {
+    if rheology == Rheology::Linear {
+        return Ok((IDENTITY, 1.0));
+    }
+    let volume = 1.0 + dilatation(measure);
+    if volume > 0.0 && measure[0] > -1.0 {
+        Ok((inverse(&one_plus(measure)), volume))
+    } else {
+        Err(Inverted)
+    }
+}
+
+/// The measure of the law at a point with the stress conjugate to it, where it is not the strain
+/// `C - 1` itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Conversion {
+    pub measure: Measure,
+    pub conjugate: Symmetric,
+}
+
+impl Conversion {
+    /// Change of the second Piola-Kirchhoff stress by those of the conjugate stress and of C.
+    #[inline]
+    pub fn stress_change(&self, conjugate: &Symmetric, strain: &Symmetric) -> Symmetric {
+        self.measure.stress_change(&self.conjugate, conjugate, strain)
+    }
+}

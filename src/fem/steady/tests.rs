@@ -1,0 +1,140 @@
+//! The steady block against differences and exact results.
+
+use super::block::Block;
+use super::grid::Grid;
+use super::{BlockOptions, Setting, SteadyContact};
+use crate::fem::error::FemError;
+use crate::fem::mesh::Grading;
+use crate::fem::profile::RigidProfile;
+use crate::numerics::Interrupt;
+use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
+use crate::surface::Wave;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::time::{Duration, Instant};
+
+const PERIOD: f64 = 6.25e-5;
+
+pub(super) fn setting(rubber: &Rubber, rheology: Rheology, speed: f64) -> Setting {
+    let finite = FiniteStrainRubber::new(rubber, rheology).unwrap();
+    Setting { rubber: rubber.clone(), finite, speed, interrupt: Default::default() }
+}
+
+fn block(rubber: &Rubber, rheology: Rheology, options: &BlockOptions, speed: f64) -> Block {
+    let material = setting(rubber, rheology, speed).material(PERIOD);
+    Block::new(Grid::new(options, PERIOD), material)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
+#[test]
+fn homogeneous_deformation_is_in_equilibrium() {
+    let grading = Grading { first: 0.8, growth: 1.3 };
+    for (law, coarsening) in [(Rheology::NeoHookean, true), (Rheology::Linear, false)] {
+        let options = BlockOptions { coarsening, grading, ..BlockOptions::new(128) };
+        let mut block = block(&Rubber::table_2_1(), law, &options, 0.01);
+        let grid = block.grid.clone();
+        // A large shear and compression of the rows: u = (6 Z, -0.1 Z).
+        let displacements: Vec<f64> = (0..=grid.rows())
+            .flat_map(|row| {
+                let z = grid.levels[row];
+                [6.0 * z, -0.1 * z].repeat(grid.nodes_in(row))
+            })
+            .collect();
+        let (forces, validity) = block.deform(&displacements).unwrap();
+        assert!((validity.label - 1.0).abs() < 1e-12 && (validity.volume - 0.9).abs() < 1e-9);
+        let inner = 2 * grid.first_node(1)..2 * grid.first_node(grid.rows());
+        let outer = largest(&forces[..inner.start]);
+        // Round-off of the glassy stiffness, 1e3 times the forces of the outer rows.
+        assert!(largest(&forces[inner]) < 1e-9 * outer, "{law:?}");
+        assert!(block.dissipation(&displacements).abs() < 1e-9, "nothing flows at rest");
+    }
+}
+
+#[test]
+fn the_tangent_is_the_derivative_of_the_forces() {
+    let grading = Grading { first: 0.8, growth: 1.3 };
+    for law in [Rheology::NeoHookean, Rheology::Linear] {
+        // The last one is coarsened; speeds at which all branches remember, some, and none.
+        for (columns, speed) in [(10, 1e-6), (10, 0.01), (10, 10.0), (128, 0.01)] {
+            let coarsening = columns == 128;
+            let options = BlockOptions { coarsening, grading, ..BlockOptions::new(columns) };
+            let mut block = block(&Rubber::table_2_1(), law, &options, speed);
+            let mut generator = Pcg64::seed_from_u64(3);
+            let scale = PERIOD / columns as f64;
+            let count = 2 * block.grid.nodes();
+            let mut random = |size: f64| -> Vec<f64> {
+                (0..count).map(|_| size * scale * (generator.random::<f64>() - 0.5)).collect()
+            };
+            let (at, direction) = (random(0.2), random(1.0));
+            let step = 1e-5;
+            let mut shifted = |by: f64| {
+                let displacements: Vec<f64> =
+                    at.iter().zip(&direction).map(|(u, d)| u + by * d).collect();
+                block.deform(&displacements).unwrap().0
+            };
+            let (after, before) = (shifted(step), shifted(-step));
+            block.deform(&at).unwrap();
+            let tangent = block.tangent(&direction);
+            let difference: Vec<f64> = after
+                .iter()
+                .zip(&before)
+                .zip(&tangent)
+                .map(|((a, b), t)| (a - b) / (2.0 * step) - t)
+                .collect();
+            // Coefficients are in single precision; where branches have relaxed, glassy stiffnesses cancel
+            // in them to a five hundredth.
+            let error = largest(&difference) / largest(&tangent);
+            assert!(
+                error < if speed < 1.0 { 1e-4 } else { 1e-6 },
+                "{law:?}, {columns} columns, {speed} m/s: {error}"
+            );
+        }
+    }
+}
+
+/// With branches that follow at once or not at all the local tangent is the whole one.
+#[test]
+fn the_local_tangent_is_exact_without_a_memory() {
+    use super::stiffness::{Places, pattern};
+    let rubber = Rubber::elastic(4e6, 0.49);
+    for law in [Rheology::NeoHookean, Rheology::Linear] {
+        let mut block = block(&rubber, law, &BlockOptions::new(12), 0.01);
+        let mut generator = Pcg64::seed_from_u64(5);
+        let count = 2 * block.grid.nodes();
+        let mut random = |size: f64| -> Vec<f64> {
+            (0..count).map(|_| size * PERIOD / 12.0 * (generator.random::<f64>() - 0.5)).collect()
+        };
+        let (at, direction) = (random(0.2), random(1.0));
+        block.deform(&at).unwrap();
+        let pattern = pattern(&block.grid);
+        let values = Places::new(&block.grid, &pattern).assemble(&block, &pattern);
+        let mut product = vec![0.0; count];
+        pattern.multiply(&values, &direction, &mut product);
+        let expected = block.tangent(&direction);
+        let difference: Vec<f64> = product.iter().zip(&expected).map(|(a, b)| a - b).collect();
+        assert!(largest(&difference) < 1e-6 * largest(&expected), "{law:?}");
+    }
+}
+
+#[test]
+fn an_interrupt_ends_a_solve_and_is_no_end_of_a_path() {
+    let wave = Wave { wavelength: 6.25e-5, amplitude: 1.867e-5, phase: 0.0 };
+    let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
+    let (rubber, law) = (Rubber::table_2_1(), Rheology::NeoHookean);
+    let interrupt = Interrupt::default();
+    let mut contact = SteadyContact::new(&rubber, law, 0.01, profile, BlockOptions::new(1024))
+        .unwrap()
+        .interruptible(&interrupt);
+    let user = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(500));
+        interrupt.set();
+        Instant::now()
+    });
+    assert_eq!(contact.solve(3e6).err(), Some(FemError::Interrupted));
+    let heard = user.join().unwrap().elapsed();
+    assert!(heard < Duration::from_secs(1), "{heard:?}");
+    assert_eq!(contact.solve(3e5).err(), Some(FemError::Interrupted));
+}
