@@ -58,6 +58,7 @@ use level::Level;
 use path::Path;
 use row::Material;
 use solution::SteadySolution;
+use state::State;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
@@ -268,6 +269,9 @@ impl SteadyContact {
     /// The solution at a pressure from the points passed before, if there are any.
     fn go_on(&mut self, pressure: f64) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
+        if let Some(exact) = path.finish_nearby(pressure) {
+            return Ok(read(path, &exact, self.setting.speed));
+        }
         path.return_towards(pressure);
         path.advance_to(pressure)?;
         self.conclude()
@@ -365,14 +369,19 @@ impl SteadyContact {
 }
 
 fn conclude(path: &mut Path, speed: f64) -> Result<SteadySolution, NotConverged> {
-    let (state, residual) = path.finish()?;
-    let solution = SteadySolution::read(&path.level, &state, speed, residual);
+    let exact = path.finish()?;
+    Ok(read(path, &exact, speed))
+}
+
+/// What an exact state and its residual say, with all that was spent since the last one.
+fn read(path: &mut Path, (state, residual): &(State, f64), speed: f64) -> SteadySolution {
+    let solution = SteadySolution::read(&path.level, state, speed, *residual);
     let cost = path.take_cost();
-    Ok(SteadySolution {
+    SteadySolution {
         newton_steps: cost.newton_steps,
         krylov_iterations: cost.krylov_iterations,
         ..solution
-    })
+    }
 }
 
 /// The exact solution at the last point of a path at which it converges, with the path there.
