@@ -280,7 +280,7 @@ impl SteadyContact {
     /// The solution on a new path: from a slight contact on the coarsest grid to the finest one, or
     /// for a profile of many scales from its longest waves to the shortest. Where it fails, the path is
     /// where it ended, and what was known before is kept if it went further.
-    fn set_out(&mut self, pressure: f64) -> Result<SteadySolution, Option<Path>> {
+    fn set_out(&mut self, pressure: f64) -> Result<SteadySolution, Option<Box<Path>>> {
         let known = self.path.take();
         let arrived = if self.profile.shortest_waves() > MOST_WAVES_FROM_A_TIP {
             growth::grow(&self.setting, &self.profile, self.options, pressure)
@@ -291,7 +291,7 @@ impl SteadyContact {
         match arrived.and_then(|()| self.conclude()) {
             Ok(solution) => Ok(solution),
             Err(NotConverged) => {
-                let ended = self.path.take();
+                let ended = self.path.take().map(Box::new);
                 self.path = known;
                 Err(ended)
             }
@@ -348,10 +348,10 @@ impl SteadyContact {
 
     /// The highest point at which the contact converges, of the path that ended or of what was known
     /// before.
-    fn last_converged(&mut self, ended: Option<Path>) -> PathEnd {
+    fn last_converged(&mut self, ended: Option<Box<Path>>) -> PathEnd {
         let speed = self.setting.speed;
         let mut reached: Option<SteadySolution> = None;
-        for path in ended.into_iter().chain(self.path.take()) {
+        for path in ended.map(|path| *path).into_iter().chain(self.path.take()) {
             let Some((path, solution)) = last_converged(path, speed) else { continue };
             if reached.as_ref().is_none_or(|best| best.mean_pressure < solution.mean_pressure) {
                 reached = Some(solution);
