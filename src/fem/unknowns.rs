@@ -1,4 +1,4 @@
-//! The unknowns of the steady problem.
+//! The unknowns of a block whose upper edge moves as a whole.
 //!
 //! The upper edge moves as a whole in x, so its nodes share one unknown. The rest of the nodes
 //! have their own displacements. In the frame of the profile the field may be displaced along
@@ -62,9 +62,21 @@ impl Unknowns {
         reduced.push(mean_displacement);
         reduced
     }
+}
 
-    /// Mean x displacement of the contact nodes.
-    pub fn mean_contact_displacement(&self, nodes: &[f64]) -> f64 {
-        nodes[..2 * self.columns].iter().step_by(2).sum::<f64>() / self.columns as f64
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unknowns_leave_out_the_x_displacements_of_the_upper_edge() {
+        let unknowns = Unknowns { columns: 3, rows: 2 };
+        assert_eq!((unknowns.own(), unknowns.count()), (15, 16));
+        let values: Vec<f64> = (0..16).map(f64::from).collect();
+        let nodes = unknowns.expand(&values);
+        assert_eq!(nodes[12..], [15.0, 12.0, 15.0, 13.0, 15.0, 14.0]);
+        for (entry, value) in nodes.iter().enumerate() {
+            assert_eq!(unknowns.of(entry).map_or(15.0, |of| of as f64), *value);
+        }
     }
 }

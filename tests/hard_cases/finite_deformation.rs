@@ -130,9 +130,9 @@ fn steep_profiles_drag_as_much_as_they_heat() {
     }
 }
 
-/// More shear stress than the linear law bears, whatever the mesh: the path says where it ended.
+/// The shear stress of the linear law has a largest value: the path says where it ended.
 #[test]
-fn more_drag_than_the_linear_law_bears_is_refused() {
+fn a_path_of_the_linear_law_that_ends_is_refused() {
     let profile = sine(shortest_wave().amplitude);
     let (rubber, options) = (table_2_1(), BlockOptions::new(32));
     let mut contact =

@@ -41,8 +41,10 @@ impl Grid {
         for height in &mesh.row_heights[1..] {
             let below = columns[columns.len() - 1];
             let flat = *height > COARSEN * period / below as f64;
-            let halved =
-                options.coarsening && flat && below % 2 == 0 && below / 2 >= FEWEST_COLUMNS;
+            let halved = options.coarsening
+                && flat
+                && below.is_multiple_of(2)
+                && below / 2 >= FEWEST_COLUMNS;
             columns.push(if halved { below / 2 } else { below });
         }
         let mut first = vec![0];

@@ -58,6 +58,7 @@ use level::Level;
 use path::Path;
 use row::Material;
 use solution::SteadySolution;
+use state::State;
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
@@ -268,6 +269,9 @@ impl SteadyContact {
     /// The solution at a pressure from the points passed before, if there are any.
     fn go_on(&mut self, pressure: f64) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
+        if let Some(exact) = path.finish_nearby(pressure) {
+            return Ok(read(path, &exact, self.setting.speed));
+        }
         path.return_towards(pressure);
         path.advance_to(pressure)?;
         self.conclude()
@@ -276,7 +280,7 @@ impl SteadyContact {
     /// The solution on a new path: from a slight contact on the coarsest grid to the finest one, or
     /// for a profile of many scales from its longest waves to the shortest. Where it fails, the path is
     /// where it ended, and what was known before is kept if it went further.
-    fn set_out(&mut self, pressure: f64) -> Result<SteadySolution, Option<Path>> {
+    fn set_out(&mut self, pressure: f64) -> Result<SteadySolution, Option<Box<Path>>> {
         let known = self.path.take();
         let arrived = if self.profile.shortest_waves() > MOST_WAVES_FROM_A_TIP {
             growth::grow(&self.setting, &self.profile, self.options, pressure)
@@ -287,7 +291,7 @@ impl SteadyContact {
         match arrived.and_then(|()| self.conclude()) {
             Ok(solution) => Ok(solution),
             Err(NotConverged) => {
-                let ended = self.path.take();
+                let ended = self.path.take().map(Box::new);
                 self.path = known;
                 Err(ended)
             }
@@ -344,10 +348,10 @@ impl SteadyContact {
 
     /// The highest point at which the contact converges, of the path that ended or of what was known
     /// before.
-    fn last_converged(&mut self, ended: Option<Path>) -> PathEnd {
+    fn last_converged(&mut self, ended: Option<Box<Path>>) -> PathEnd {
         let speed = self.setting.speed;
         let mut reached: Option<SteadySolution> = None;
-        for path in ended.into_iter().chain(self.path.take()) {
+        for path in ended.map(|path| *path).into_iter().chain(self.path.take()) {
             let Some((path, solution)) = last_converged(path, speed) else { continue };
             if reached.as_ref().is_none_or(|best| best.mean_pressure < solution.mean_pressure) {
                 reached = Some(solution);
@@ -365,14 +369,19 @@ impl SteadyContact {
 }
 
 fn conclude(path: &mut Path, speed: f64) -> Result<SteadySolution, NotConverged> {
-    let (state, residual) = path.finish()?;
-    let solution = SteadySolution::read(&path.level, &state, speed, residual);
+    let exact = path.finish()?;
+    Ok(read(path, &exact, speed))
+}
+
+/// What an exact state and its residual say, with all that was spent since the last one.
+fn read(path: &mut Path, (state, residual): &(State, f64), speed: f64) -> SteadySolution {
+    let solution = SteadySolution::read(&path.level, state, speed, *residual);
     let cost = path.take_cost();
-    Ok(SteadySolution {
+    SteadySolution {
         newton_steps: cost.newton_steps,
         krylov_iterations: cost.krylov_iterations,
         ..solution
-    })
+    }
 }
 
 /// The exact solution at the last point of a path at which it converges, with the path there.

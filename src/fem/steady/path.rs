@@ -33,6 +33,10 @@ const LESS_BARRIER: f64 = 0.1;
 const LITTLE_LESS_BARRIER: f64 = 0.93;
 /// States kept on a level.
 const MOST_KEPT: usize = 16;
+/// Logarithm of the ratio of pressures up to which an exact contact is found from another, and the barrier
+/// on the way.
+const NEARBY: f64 = 0.35;
+const NEARBY_BARRIER: f64 = 1e-3;
 /// Attempts at the exact contact, each from a smaller barrier.
 const MOST_CLOSINGS: usize = 6;
 
@@ -43,6 +47,8 @@ pub(super) struct Path {
     ratio: f64,
     /// States passed before, of other pressures.
     passed: Vec<State>,
+    /// The exact contact found last.
+    exact: Option<State>,
 }
 
 impl Path {
@@ -50,7 +56,13 @@ impl Path {
     pub fn start(mut level: Level, pressure: f64) -> Result<Self, NotConverged> {
         for divisor in FIRST_DIVISORS {
             if let Ok(state) = first_contact(&mut level, pressure / divisor) {
-                return Ok(Self { level, state, ratio: FIRST_RATIO, passed: Vec::new() });
+                return Ok(Self {
+                    level,
+                    state,
+                    ratio: FIRST_RATIO,
+                    passed: Vec::new(),
+                    exact: None,
+                });
             }
         }
         Err(NotConverged)
@@ -122,7 +134,7 @@ impl Path {
             self.level.cost = level.cost;
             return Err(NotConverged);
         }
-        *self = Self { level, state, ratio: self.ratio, passed: Vec::new() };
+        *self = Self { level, state, ratio: self.ratio, passed: Vec::new(), exact: None };
         Ok(())
     }
 
@@ -138,20 +150,30 @@ impl Path {
         let mut barrier = BARRIER * LESS_BARRIER;
         let level = &mut self.level;
         reduce(level, &mut state, BARRIER, barrier)?;
+        let target = exactly(state.pressure);
         for _ in 0..MOST_CLOSINGS {
             reduce(level, &mut state, barrier, barrier * LESS_BARRIER)?;
             barrier *= LESS_BARRIER;
-            let exact = Target {
-                pressure: state.pressure,
-                barrier: 0.0,
-                tolerance: EXACT,
-                most_steps: MOST_STEPS_TO_EXACT,
-            };
-            if let Ok((_, residual)) = level.solve(&mut state, exact) {
+            if let Ok((_, residual)) = level.solve(&mut state, target) {
+                self.exact = Some(state.clone());
                 return Ok((state, residual));
             }
         }
         Err(NotConverged)
+    }
+
+    /// The exact contact at a pressure near that of the one found last, straight from it, and its
+    /// residual.
+    pub fn finish_nearby(&mut self, pressure: f64) -> Option<(State, f64)> {
+        let mut state = self.exact.clone()?;
+        if (state.pressure / pressure).ln().abs() > NEARBY {
+            return None;
+        }
+        let level = &mut self.level;
+        level.solve(&mut state, behind(pressure, NEARBY_BARRIER)).ok()?;
+        let (_, residual) = level.solve(&mut state, exactly(pressure)).ok()?;
+        self.exact = Some(state.clone());
+        Some((state, residual))
     }
 
     /// All that was spent since the last time.
@@ -172,6 +194,10 @@ fn first_contact(level: &mut Level, pressure: f64) -> Result<State, NotConverged
     level.solve(&mut state, target)?;
     reduce(level, &mut state, FIRST_BARRIER, BARRIER)?;
     Ok(state)
+}
+
+fn exactly(pressure: f64) -> Target {
+    Target { pressure, barrier: 0.0, tolerance: EXACT, most_steps: MOST_STEPS_TO_EXACT }
 }
 
 /// Takes a state from one barrier to a smaller one.

@@ -240,15 +240,15 @@ fn step(weights: &Weights, before: &Symmetric, measures: &[Symmetric; 4]) -> Sym
 
 /// Follows the flow rule of a branch over the period.
 fn relax(relaxation: &Relaxation, line: &Line, mut visit: impl FnMut(usize, &Passage<'_>)) {
-    let columns = line.measures.len();
     let weights: Vec<(Weights, Weights)> = line
         .spacings
         .iter()
         .map(|spacing| Weights::with_slopes(spacing / relaxation.length))
         .collect();
     let mut state = [0.0; 3];
-    for column in relaxation.start(&line.spacings)..columns {
-        state = step(&weights[column].0, &state, &window(&line.measures, column));
+    let start = relaxation.start(&line.spacings);
+    for (column, weights) in weights.iter().enumerate().skip(start) {
+        state = step(&weights.0, &state, &window(&line.measures, column));
     }
     let whole = relaxation.whole_period();
     state = state.map(|y| y / whole);

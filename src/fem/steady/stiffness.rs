@@ -32,7 +32,7 @@ fn corners(grid: &Grid, row: usize, column: usize) -> [Corner; 6] {
             return Corner([(first + column, 1.0), (0, 0.0)]);
         }
         let (node, count) = (column / 2, columns / 2);
-        if column % 2 == 0 {
+        if column.is_multiple_of(2) {
             Corner([(first + node, 1.0), (0, 0.0)])
         } else {
             Corner([(first + node, 0.5), (first + (node + 1) % count, 0.5)])
