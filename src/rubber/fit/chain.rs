@@ -34,6 +34,8 @@ pub(super) struct Chain {
     pub uncertain: Vec<bool>,
     /// The colder sweep of each such pair.
     loose: Vec<usize>,
+    /// The colder sweep of each pair along a power law, where vertical factors are free.
+    featureless: Vec<usize>,
 }
 
 impl Chain {
@@ -59,25 +61,48 @@ impl Chain {
 
     /// The vertical factors, relative to the known ones, that the fit has to find.
     pub fn free_verticals(&self) -> Option<FreeVerticals> {
-        let step =
-            |pair: &[Sweep]| WALK_PER_ROOT_K * (celsius(&pair[1]) - celsius(&pair[0])).sqrt();
         matches!(self.vertical, VerticalChoice::Free { .. }).then(|| FreeVerticals {
             free: (0..self.sweeps.len()).map(|k| k != self.reference).collect(),
-            steps: self.sweeps.windows(2).map(step).collect(),
+            steps: (1..self.sweeps.len()).map(|k| self.step(k - 1)).collect(),
             noise: 0.0,
         })
     }
 
     /// By what ln a of a sweep may be off beyond what the scatter says, where pairs between it and
     /// the reference hardly show their shift: each of them may be anywhere from no shift to sweeps
-    /// that just touch.
+    /// that just touch. Along a power law a shift is open by what the vertical factor is, over the slope.
     pub fn slack(&self, sweep: usize, ln_shifts: &[f64]) -> f64 {
-        let [from, to] = [sweep.min(self.reference), sweep.max(self.reference)];
+        let between = self.between(sweep);
         let of = |k: &usize| {
             let place = ln_shifts[*k] - ln_shifts[k + 1];
             place.abs().max((ln_length(&self.sweeps[*k]) - place).abs())
         };
-        self.loose.iter().filter(|k| (from..to).contains(*k)).map(of).sum()
+        let by_factor = |k: &usize| {
+            let [colder, hotter] = [&self.sweeps[*k], &self.sweeps[k + 1]];
+            // No further than sweeps that just touch, however flat they are.
+            (1.96 * self.step(*k) / shift::slope(colder, hotter).max(0.0)).min(ln_length(colder))
+        };
+        let inside = |k: &&usize| between.contains(*k);
+        let loose: f64 = self.loose.iter().filter(inside).map(of).sum();
+        loose + self.featureless.iter().filter(inside).map(by_factor).sum::<f64>()
+    }
+
+    /// By what ln b of a sweep may be off beyond what the scatter says, where pairs between it and the
+    /// reference lie along a power law.
+    pub fn vertical_slack(&self, sweep: usize) -> f64 {
+        let between = self.between(sweep);
+        let inside = |k: &&usize| between.contains(*k);
+        self.featureless.iter().filter(inside).map(|k| 1.96 * self.step(*k)).sum()
+    }
+
+    /// The pairs between a sweep and the reference.
+    fn between(&self, sweep: usize) -> std::ops::Range<usize> {
+        sweep.min(self.reference)..sweep.max(self.reference)
+    }
+
+    /// Standard deviation of the change of ln b from a sweep to the next.
+    fn step(&self, k: usize) -> f64 {
+        WALK_PER_ROOT_K * (celsius(&self.sweeps[k + 1]) - celsius(&self.sweeps[k])).sqrt()
     }
 
     /// Where a fit of vertical factors starts: from the known ones, from none, from both ends of
@@ -169,7 +194,15 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
     let ln_shifts = relative.map(|ln| ln - first.ln_shifts[reference]).collect();
     let temperature = |k: usize| celsius(&sweeps[k]);
     let between = |k: usize| if k < reference { k..reference } else { reference..k };
-    let uncertain = |k: usize| first.uncertain.iter().any(|pair| between(k).contains(pair));
+    let free = matches!(options.vertical, VerticalChoice::Free { .. });
+    let featureless = |k: &usize| free && shift::featureless(&sweeps[*k], &sweeps[k + 1]);
+    let featureless: Vec<usize> = (0..sweeps.len() - 1).filter(featureless).collect();
+    let open = || first.uncertain.iter().chain(&featureless);
+    let uncertain = |k: usize| open().any(|pair| between(k).contains(pair));
+    let inside = |pairs: &[usize]| -> Vec<usize> {
+        let both = |k: &&usize| group.contains(*k) && group.contains(&(**k + 1));
+        pairs.iter().filter(both).map(|k| k - group.start).collect()
+    };
     let by_loss = first.by_loss.iter().filter(|k| group.contains(k));
     let others = (0..sweeps.len()).filter(|k| !group.contains(k));
     Ok(Chain {
@@ -187,12 +220,8 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
             .collect(),
         joined_by_loss_c: by_loss.map(|k| [temperature(*k), temperature(k + 1)]).collect(),
         uncertain: group.clone().map(uncertain).collect(),
-        loose: first
-            .uncertain
-            .iter()
-            .filter(|k| group.contains(k) && group.contains(&(*k + 1)))
-            .map(|k| k - group.start)
-            .collect(),
+        loose: inside(&first.uncertain),
+        featureless: inside(&featureless),
         sweeps: sweeps[group].to_vec(),
     })
 }
@@ -223,6 +252,7 @@ pub(super) fn given(
         joined_by_loss_c: Vec::new(),
         uncertain: vec![false; sweeps.len()],
         loose: Vec::new(),
+        featureless: Vec::new(),
         sweeps,
     };
     if let [Sweep { temperature_c: None, .. }] = chain.sweeps[..] {

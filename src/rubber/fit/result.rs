@@ -262,7 +262,7 @@ fn shift_factors(
             let interval = |half: f64| [(ln - half).exp(), (ln + half).exp()];
             let confidence_95 =
                 half_width(problem.vertical_index(k), k, |series| &series.ln_verticals)
-                    .map(interval);
+                    .map(|half| interval(half + chain.vertical_slack(k)));
             Some(VerticalFactor { factor: ln.exp(), confidence_95 })
         }
     };

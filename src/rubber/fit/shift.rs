@@ -21,6 +21,10 @@ const LEAST_COMMON_POINTS: usize = 2;
 /// per cent from clamping to clamping.
 const LEAST_CHANGE: f64 = 0.05;
 
+/// Standard deviation of ln tan δ over two sweeps, in those of its scatter, that tells a shift from a
+/// vertical factor.
+const LEAST_CONTRAST: f64 = 2.0;
+
 /// Difference in ln a up to which E'' and tan δ confirm a shift by E': a tenth of a decade.
 const AGREEMENT: f64 = 0.1 * std::f64::consts::LN_10;
 
@@ -107,6 +111,35 @@ pub(super) fn by_loss_factor_from(sweeps: &[Sweep], ln_shifts: &[f64]) -> Start 
         start.ln_verticals.push(start.ln_verticals[k] + vertical);
     }
     start
+}
+
+/// Whether tan δ changes by too little over two sweeps for its scatter: along a power law of the
+/// moduli, where a vertical factor is as good as a shift.
+pub(super) fn featureless(colder: &Sweep, hotter: &Sweep) -> bool {
+    let values: Vec<f64> = colder.points.iter().chain(&hotter.points).map(ln_loss_factor).collect();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    // What a point differs from the mean of its neighbours by has 3/2 of the variance of a point.
+    let middle = |three: &[SweepPoint]| {
+        let [a, b, c] = [&three[0], &three[1], &three[2]].map(ln_loss_factor);
+        (b - 0.5 * (a + c)).powi(2) / 1.5
+    };
+    let of = |sweep: &Sweep| sweep.points.windows(3).map(middle).collect::<Vec<_>>();
+    let scatter = [of(colder), of(hotter)].concat();
+    let variance = scatter.iter().sum::<f64>() / scatter.len() as f64;
+    // Sweeps of fewer than three points have no scatter, and do not tell.
+    scatter.is_empty() || squares / values.len() as f64 <= LEAST_CONTRAST.powi(2) * variance
+}
+
+/// Slope of ln E' over ln ω between the ends of two sweeps, the smaller one.
+pub(super) fn slope(colder: &Sweep, hotter: &Sweep) -> f64 {
+    let of = |sweep: &Sweep| {
+        let ends = [&sweep.points[0], &sweep.points[sweep.points.len() - 1]];
+        let [from, to] =
+            ends.map(|point| [point.storage_modulus.ln(), point.angular_frequency.ln()]);
+        (to[0] - from[0]) / (to[1] - from[1])
+    };
+    of(colder).min(of(hotter))
 }
 
 /// By what ln E' changes over a sweep.
