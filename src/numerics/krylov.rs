@@ -99,10 +99,12 @@ impl KrylovSpace {
     }
 
     fn wants_more(&self, limits: KrylovLimits) -> bool {
+        // A residual that is not a number is not small: it has to show in the solution.
+        let small = self.residual_norm() <= limits.tolerance;
         // More basis vectors than unknowns cannot be independent.
         !self.exhausted
+            && !small
             && self.columns.len() < limits.max_iterations.min(self.last().len())
-            && self.residual_norm() > limits.tolerance
     }
 
     /// The vector whose image comes next.
@@ -250,6 +252,16 @@ mod tests {
         let report = gmres(multiply, &mut plain, limits, &Interrupt::default());
         let residual = residual_of(&plain, &rhs);
         assert!(residual < 2e-11, "{report:?}, true residual {residual:e}");
+    }
+
+    #[test]
+    fn a_residual_that_is_not_a_number_has_no_solution_that_is() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let limits = KrylovLimits { tolerance: 1e-10, max_iterations: 5 };
+            let mut x = vec![1.0, bad, 1.0];
+            let report = gmres(multiply, &mut x, limits, &Interrupt::default());
+            assert!(!report.residual_norm.is_finite() && x.iter().any(|x| x.is_nan()), "{x:?}");
+        }
     }
 
     #[test]

@@ -67,23 +67,16 @@ fn the_transient_route_writes_its_series() {
 #[test]
 fn the_end_of_a_path_is_an_error_with_the_last_point() {
     let error = asperity(
-        "solve fem --wave 0.0625:0.01867 --speed 10 --pressure 20 --columns 32 --rheology linear",
+        "solve fem --wave 0.0625:0.01867 --speed 10 --pressure 3 --columns 16 --rheology linear",
     )
     .error(1);
-    assert!(error.contains("no finite-deformation solution at 20.0000 MPa"), "{error}");
+    assert!(error.contains("no finite-deformation solution at 3.0000 MPa"), "{error}");
     assert!(error.contains("the path ended at ") && error.contains("friction is"), "{error}");
     assert!(error.contains("try other --columns, or a pressure below that"), "{error}");
-    let area = asperity("solve fem --wave 0.0625:0.01867 --speed 10 --area 0.9 --columns 32");
-    let error = area.error(1);
+    let area =
+        "solve fem --wave 0.0625:0.01867 --speed 10 --area 0.9 --columns 16 --rheology linear";
+    let error = asperity(area).error(1);
     assert!(error.starts_with("error: --area 0.9: no finite-deformation solution"), "{error}");
-}
-
-#[test]
-fn a_path_that_never_began_has_no_pressure_below() {
-    let error =
-        asperity("solve fem --wave 0.0625:1 --speed 20 --pressure 24 --columns 48").error(1);
-    assert!(error.contains("before the first contact was found; try other --columns"), "{error}");
-    assert!(!error.contains("below"), "{error}");
 }
 
 #[test]

@@ -119,13 +119,13 @@ fn steep_profiles_drag_as_much_as_they_heat() {
     for steepness in [0.3, 1.0] {
         let mut case = Case::new(
             "steep sine in the FEM",
-            format!("64 columns, 1 MPa, amplitude over wavelength {steepness}"),
+            format!("128 columns, 1 MPa, amplitude over wavelength {steepness}"),
             "friction from the drag and from the heat",
         );
-        let [drag, heat] = drag_and_heat(&mut case, steepness, 64, 1e6);
-        // Of six to ten elements in contact, first order in their number: one part in fifty, which
-        // falls to one in five hundred on 128 columns.
-        case.agrees(drag, heat, 2e-2);
+        let [drag, heat] = drag_and_heat(&mut case, steepness, 128, 1e6);
+        // Of ten to twenty elements in contact, first order in their number: three parts in a hundred on
+        // half the columns.
+        case.agrees(drag, heat, 1e-2);
         case.enter();
     }
 }

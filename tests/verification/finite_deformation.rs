@@ -97,8 +97,10 @@ fn the_work_of_the_drag_is_the_heat_of_the_branches() {
         let solution = contact(&table_2_1(), 0.01, amplitude, options).solve(1e6).unwrap();
         (solution.hysteretic_friction / solution.friction_coefficient - 1.0).abs()
     };
-    let errors = [32, 64, 128].map(error);
-    assert!(errors[2] < errors[0] && errors[2] < 2e-3, "{errors:?}");
+    // Contact edges fall between nodes, so that one mesh is better by chance than the next.
+    let errors = [32, 64, 128, 256].map(error);
+    let finest = errors[2].max(errors[3]);
+    assert!(finest < errors[0] / 10.0 && errors[3] < 1e-3, "{errors:?}");
 }
 
 #[test]

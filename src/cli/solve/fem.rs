@@ -374,3 +374,23 @@ fn rigid_profile(shape: &Shape) -> RigidProfile {
         RigidProfile::from_waves(&shape.waves, shape.period)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_that_never_began_has_no_pressure_below() {
+        let ended = |reached| {
+            with_advice("", FemError::PathEnded { wanted: 24e6, columns: 48, reached }).to_string()
+        };
+        let never = ended(PathEnd::NotStarted);
+        assert!(
+            never.ends_with("before the first contact was found; try other --columns"),
+            "{never}"
+        );
+        let (pressure, friction_coefficient, contact_area_fraction) = (2e6, 0.3, 0.2);
+        let at = ended(PathEnd::At { pressure, friction_coefficient, contact_area_fraction });
+        assert!(at.contains("at 2.0000 MPa") && at.ends_with("or a pressure below that"), "{at}");
+    }
+}
