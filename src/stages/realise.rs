@@ -94,7 +94,7 @@ pub fn schemas() -> Vec<SchemaVersion> {
 
 /// Draws the phases and writes the surfaces; returns warnings.
 ///
-/// Approximations whose surfaces are the same ([`same_surfaces`]) are realised once, under the number of waves that
+/// Approximations whose surfaces are the same (`same_surfaces`) are realised once, under the number of waves that
 /// the recipe names first.
 ///
 /// # Errors

@@ -60,7 +60,7 @@ impl<'a> Ensemble<'a> {
         let all = if bem.average_tolerance.is_some() { surfaces.len() } else { solved };
         let [begin, end] = [parameters.first_realisations, parameters.most_realisations]
             .map(|count| if negligible.is_some() { 0 } else { count as usize });
-        let own = |row: &&_| is_own(*row, first.waves, speed_mm_s);
+        let own = |row: &&_| is_own(row, first.waves, speed_mm_s);
         let columns = fem::columns(&parameters.fem(), first);
         let solves = results.solves.iter().filter(own);
         Self {
