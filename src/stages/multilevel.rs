@@ -4,7 +4,7 @@
 //! Two-level Monte Carlo (Giles, Acta Numerica 24, 2015, doi:10.1017/S096249291500001X; as a control
 //! variate of unit coefficient Peherstorfer, Willcox & Gunzburger, SIAM Review 60, 2018,
 //! doi:10.1137/16M1082469): the mean of the half-space plus the mean difference of pairs that share
-//! their phases ([`estimate`]). The numbers of both follow from variances and costs ([`shares`]).
+//! their phases (`estimate`). The numbers of both follow from variances and costs (`shares`).
 
 mod bound;
 mod ensemble;
