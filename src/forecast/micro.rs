@@ -9,14 +9,14 @@ use crate::stages::{SolveError, StageError};
 use serde::Serialize;
 
 /// Seconds of a microscale on 128 columns for each MPa that it is pressed to, with all its samples: of
-/// the main job, 190 s for 43 MPa. Elements cost alike up to a power of 1.15 in their number.
-const SECONDS_PER_MPA: f64 = 4.4;
+/// the main job, 28 s of two threads for 43 MPa. Elements cost alike up to a power of 1.15 in their number.
+const SECONDS_PER_MPA: f64 = 0.65;
 const REFERENCE_COLUMNS: f64 = 128.0;
 const GROWTH: f64 = 1.15;
 
 /// Seconds of a curve with all waves at finite deformation for each pressure on 128 columns: three waves of the
-/// verification recipe, 12 pressures in 6.3 s (in 18.6 s on 256 columns).
-const SECONDS_PER_SOLVE: f64 = 0.5;
+/// verification recipe, 153 pressures on 256 columns in 80 s.
+const SECONDS_PER_SOLVE: f64 = 0.24;
 
 /// Expected seconds of a microscale that is pressed to so many MPa, on one thread.
 pub(crate) fn seconds_pressed_to(most_pressure_mpa: f64, columns: usize) -> f64 {
