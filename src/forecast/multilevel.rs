@@ -17,7 +17,7 @@ pub struct MultilevelForecast {
     pub waves: u32,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
-    /// Their number: the first ones, or none where the surface is too gentle for a difference that matters.
+    /// How many: the first realisations; 0 where the surface is so gentle that the models hardly differ.
     pub pairs: u32,
     /// The number that it may grow to if the differences of the first ones vary too much for the tolerance.
     pub most_pairs: u32,

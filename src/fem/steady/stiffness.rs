@@ -76,8 +76,8 @@ impl Places {
         let mut places = Vec::new();
         each_element(grid, |row, column| {
             pairs(&corners(grid, row, column), |_, [r, c], _| {
-                // Coupled pairs are in the pattern.
-                places.push(pattern.position(r, c).unwrap_or_default() as u32);
+                let place = pattern.position(r, c).expect("the pattern is made of these pairs");
+                places.push(place as u32);
             });
         });
         Self(places)

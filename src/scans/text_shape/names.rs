@@ -31,8 +31,8 @@ pub(super) fn marker(preamble: &[&str], cells: impl Fn(&str) -> Vec<String>) -> 
     alone.then(|| text.to_owned())
 }
 
-/// The start of the first written line behind the points, up to its first number. None if it is a comment or begins
-/// with a number, and none if points follow: what stands between points is a fault that the reader has to name.
+/// The beginning of the first line after the points that is not blank, up to its first digit. `None` if that line is a
+/// comment or begins with a number, or if more points follow: a line between points is a fault for the reader to report.
 pub(super) fn footer(
     text: &str,
     layout: Layout,

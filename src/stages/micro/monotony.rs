@@ -6,8 +6,8 @@ use super::{COLUMNS_KEY, SampleRow};
 /// Changes below this, relative to the largest value, are round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Where the contact area at finite deformation falls or the mean separation rises, from samples at ascending
-/// pressures, in words; none if nowhere. Of several places the largest.
+/// Says where the contact area at finite deformation falls or the mean separation rises, given samples at
+/// ascending pressures. `None` if neither happens; the largest change if there are several.
 pub(super) fn breaks(samples: &[SampleRow]) -> Option<String> {
     let area = largest_rise(samples, |row| -row.area_finite_deformation);
     let separation = largest_rise(samples, |row| row.separation_finite_deformation_mm);

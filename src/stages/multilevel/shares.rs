@@ -83,7 +83,7 @@ impl Goal {
 
 /// The numbers to be solved next: of least cost among those that are expected to meet every goal, from
 /// the present ones, which do not, to the most there may be; at most [`MOST_GROWTH`] times the present
-/// ones. Where the most do not meet them, the most pairs. None if there are no more.
+/// ones. If even the most do not meet them, as many pairs as there may be. `None` if there are no more.
 pub(super) fn choose(goals: &[Goal], now: Shares, most: Shares, costs: Costs) -> Option<Shares> {
     let worst = |half_space: usize, pairs: usize| {
         let shares = Shares { half_space, pairs };
