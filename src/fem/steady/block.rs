@@ -2,9 +2,9 @@
 
 use super::Inverted;
 use super::grid::Grid;
-use super::row::{Material, Row, Validity};
+use super::long::{Long, Value};
+use super::row::{Differences, Material, Row, Validity};
 use rayon::prelude::*;
-use std::borrow::Cow;
 
 /// The block on a grid. Displacements and forces are arrays over the nodes, row after row from the
 /// contact upwards, `(x, z)` of each node together.
@@ -18,7 +18,10 @@ pub(super) struct Block {
 impl Block {
     pub fn new(grid: Grid, material: Material) -> Self {
         let rows = (0..grid.rows())
-            .map(|row| Row::new(grid.element(row), grid.columns[row], grid.period, &material))
+            .map(|row| {
+                let size = [grid.period, grid.row_heights[row]];
+                Row::new(grid.element(row), grid.columns[row], size, &material)
+            })
             .collect();
         Self { grid, material, rows }
     }
@@ -32,15 +35,13 @@ impl Block {
     ///
     /// # Errors
     /// [`Inverted`].
-    pub fn deform(&mut self, displacements: &[f64]) -> Result<(Vec<f64>, Validity), Inverted> {
+    pub fn deform(&mut self, displacements: &[Long]) -> Result<(Vec<f64>, Validity), Inverted> {
         let (grid, material) = (&self.grid, &self.material);
         let parts: Result<Vec<_>, Inverted> = self
             .rows
             .par_iter_mut()
             .enumerate()
-            .map(|(r, row)| {
-                row.deform(material, corners(grid, displacements, r).each_ref().map(|c| &**c))
-            })
+            .map(|(r, row)| row.deform(material, &differences(grid, displacements, r)))
             .collect();
         let mut forces = vec![0.0; displacements.len()];
         let mut validity = Validity::BEST;
@@ -55,11 +56,8 @@ impl Block {
     pub fn tangent(&self, changes: &[f64]) -> Vec<f64> {
         let (grid, material) = (&self.grid, &self.material);
         let rows = self.rows.par_iter().enumerate();
-        let parts: Vec<_> = rows
-            .map(|(r, row)| {
-                row.tangent(material, corners(grid, changes, r).each_ref().map(|c| &**c))
-            })
-            .collect();
+        let parts: Vec<_> =
+            rows.map(|(r, row)| row.tangent(material, &differences(grid, changes, r))).collect();
         let mut forces = vec![0.0; changes.len()];
         for (row, part) in parts.iter().enumerate() {
             grid.gather(part, row, &mut forces);
@@ -68,21 +66,18 @@ impl Block {
     }
 
     /// Power in W/m that the branches turn into heat at the displacements taken over last.
-    pub fn dissipation(&self, displacements: &[f64]) -> f64 {
+    pub fn dissipation(&self, displacements: &[Long]) -> f64 {
         let (grid, material) = (&self.grid, &self.material);
         let rows = self.rows.par_iter().enumerate();
         // In the order of the rows, whatever the number of threads.
         let powers: Vec<f64> = rows
-            .map(|(r, row)| {
-                let corners = corners(grid, displacements, r);
-                row.dissipation(material, corners.each_ref().map(|c| &**c))
-            })
+            .map(|(r, row)| row.dissipation(material, &differences(grid, displacements, r)))
             .collect();
         powers.iter().sum()
     }
 }
 
-/// Values at the lower and upper corners of a row of elements.
-fn corners<'a>(grid: &Grid, nodes: &'a [f64], row: usize) -> [Cow<'a, [f64]>; 2] {
-    [grid.row(nodes, row).into(), grid.upper(nodes, row)]
+/// Differences between the corners of a row of elements.
+fn differences<T: Value>(grid: &Grid, nodes: &[T], row: usize) -> Differences {
+    Differences::new(grid.row(nodes, row), &grid.upper(nodes, row))
 }

@@ -3,6 +3,8 @@
 
 use super::super::mesh::Element;
 use super::BlockOptions;
+use super::long::Value;
+use std::borrow::Cow;
 
 /// Height of a row over its columns from which the rows above have half as many columns.
 const COARSEN: f64 = 4.0;
@@ -112,12 +114,12 @@ impl Grid {
     }
 
     /// The values `(x, z)` of a row of nodes in an array over the nodes.
-    pub fn row<'a>(&self, nodes: &'a [f64], row: usize) -> &'a [f64] {
+    pub fn row<'a, T>(&self, nodes: &'a [T], row: usize) -> &'a [T] {
         &nodes[2 * self.first[row]..2 * self.first[row + 1]]
     }
 
     /// The values `(x, z)` at the upper corners of a row of elements, tied ones among them.
-    pub fn upper<'a>(&self, nodes: &'a [f64], row: usize) -> std::borrow::Cow<'a, [f64]> {
+    pub fn upper<'a, T: Value>(&self, nodes: &'a [T], row: usize) -> Cow<'a, [T]> {
         let above = self.row(nodes, row + 1);
         if !self.coarser_above(row) {
             return above.into();
@@ -127,9 +129,10 @@ impl Grid {
         for node in 0..count {
             corners.extend_from_slice(&above[2 * node..2 * node + 2]);
             for i in 0..2 {
-                let tied =
-                    masters(node, count).map(|(master, weight)| weight * above[2 * master + i]);
-                corners.push(tied.iter().sum());
+                let own = above[2 * node + i];
+                let from_own = masters(node, count)
+                    .map(|(master, weight)| weight * above[2 * master + i].minus(own));
+                corners.push(own.plus(from_own.iter().sum()));
             }
         }
         corners.into()

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::contact::Pairs;
 use super::grid::Grid;
+use super::long::{Long, Value};
 use super::row::Validity;
 use super::state::{Heights, State};
 use super::stiffness::{Places, fix_x, pattern, touch};
@@ -93,7 +94,11 @@ impl Level {
 
     /// Forces and gaps of a state.
     pub fn pairs(&self, state: &State, barrier: f64) -> Pairs {
-        Pairs::new(&state.contact, self.stiffness, self.barrier(state.pressure, barrier))
+        Pairs::new(
+            &Long::values(&state.contact),
+            self.stiffness,
+            self.barrier(state.pressure, barrier),
+        )
     }
 
     /// The unknown of a node with this force in N/m and gap in m.
@@ -118,19 +123,20 @@ impl Level {
             if carried(middle) > nodes { low = middle } else { high = middle }
         }
         let lift = highest + high;
-        let mut displacements = vec![0.0; 2 * grid.nodes()];
-        displacements.iter_mut().skip(1).step_by(2).for_each(|z| *z = lift);
+        let mut displacements = vec![Long::default(); 2 * grid.nodes()];
+        displacements.iter_mut().skip(1).step_by(2).for_each(|z| *z = lift.into());
         let force = length * pressure * grid.spacing(0);
-        let unknown = |z: &f64| self.unknown(force / (lift - z), lift - z);
+        let unknown = |z: &f64| self.unknown(force / (lift - z), lift - z).into();
         State { displacements, contact: heights.iter().map(unknown).collect(), pressure }
     }
 
     /// Puts the contact nodes at their gaps and returns what is unbalanced.
     pub fn balance(&mut self, state: &mut State, barrier: f64) -> Result<Balance, NotConverged> {
         let pairs = self.pairs(state, barrier);
-        let nodes = self.surface.heights.iter().zip(&pairs.gaps);
-        for (node, (height, gap)) in state.displacements.chunks_exact_mut(2).zip(nodes) {
-            node[1] = height + gap;
+        let gaps = pairs.gaps.iter().zip(&pairs.gap_slopes).zip(&state.contact);
+        let nodes = state.displacements.chunks_exact_mut(2).zip(&self.surface.heights);
+        for ((node, height), ((gap, slope), tau)) in nodes.zip(gaps) {
+            node[1] = Long::from(*height).plus(*gap).plus(slope * tau.rest());
         }
         let (mut residual, validity) =
             self.block.deform(&state.displacements).map_err(|_| NotConverged)?;

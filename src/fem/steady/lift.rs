@@ -9,6 +9,7 @@
 //! ```
 
 use super::grid::Grid;
+use super::long::Long;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -17,7 +18,7 @@ use std::f64::consts::TAU;
 const FAR: f64 = 40.0;
 
 /// Adds the displacements of the block that belong to vertical ones of the surface in m.
-pub(super) fn lift(grid: &Grid, surface: &[f64], displacements: &mut [f64]) {
+pub(super) fn lift(grid: &Grid, surface: &[f64], displacements: &mut [Long]) {
     let count = surface.len();
     let mut planner = FftPlanner::new();
     let mut spectrum: Vec<Complex64> = surface.iter().map(|d| Complex64::from(*d)).collect();
@@ -58,16 +59,16 @@ mod tests {
     fn a_wave_decays_as_in_the_half_plane() {
         let grid = Grid::new(&BlockOptions::new(64), 1.0);
         let surface: Vec<f64> = (0..64).map(|j| 0.1 + (TAU * f64::from(j) / 32.0).cos()).collect();
-        let mut displacements = vec![0.0; 2 * grid.nodes()];
+        let mut displacements = vec![Long::default(); 2 * grid.nodes()];
         lift(&grid, &surface, &mut displacements);
         for row in 1..grid.rows() {
             let depth = 2.0 * TAU * grid.levels[row];
             let amplitude = (-depth).exp();
             for (j, node) in grid.row(&displacements, row).chunks_exact(2).enumerate() {
                 let (sine, cosine) = (TAU * j as f64 / 32.0).sin_cos();
-                assert_relative_eq!(node[0], depth * amplitude * sine, epsilon = 1e-12);
+                assert_relative_eq!(node[0].value(), depth * amplitude * sine, epsilon = 1e-12);
                 let w = 0.1 + (1.0 + depth) * amplitude * cosine;
-                assert_relative_eq!(node[1], w, epsilon = 1e-12);
+                assert_relative_eq!(node[1].value(), w, epsilon = 1e-12);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::NotConverged;
 use super::level::{Balance, Level};
+use super::long::Long;
 use super::state::State;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, flexible_gmres};
 
@@ -143,7 +144,7 @@ impl Level {
         let mut next = from.clone();
         next.displacements.iter_mut().zip(change).for_each(|(u, d)| *u += length * d);
         let fixed = self.upper_edge();
-        next.displacements[fixed].iter_mut().step_by(2).for_each(|x| *x = 0.0);
+        next.displacements[fixed].iter_mut().step_by(2).for_each(|x| *x = Long::default());
         for (tau, node) in next.contact.iter_mut().zip(change.chunks_exact(2)) {
             *tau += length * node[1];
         }

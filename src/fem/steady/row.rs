@@ -8,6 +8,7 @@ use super::super::kinematics::Tensor;
 use super::super::mesh::{CENTRE, Element, PLACES, POINTS};
 use super::Inverted;
 use super::flow::{Relaxation, Weights, window};
+use super::long::Value;
 use super::point::{Conversion, Law, Memory, Point, narrow};
 use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Symmetric};
 
@@ -40,8 +41,9 @@ impl Validity {
 #[derive(Debug, Clone)]
 pub(super) struct Row {
     pub element: Element,
-    /// Width of an element in m.
+    /// Width and height of an element in m.
     pub width: f64,
+    pub height: f64,
     pub columns: usize,
     /// Points of one kind after another, columns first.
     pub points: Vec<Point>,
@@ -51,8 +53,30 @@ pub(super) struct Row {
     pub conversions: Vec<Conversion>,
 }
 
-/// Displacements at the lower and at the upper corners of a row of elements, `(x, z)` each.
-pub(super) type Corners<'a> = [&'a [f64]; 2];
+/// Differences of displacements in m between the corners of each element of a row, `(x, z)`.
+pub(super) struct Differences {
+    /// From the left to the right lower corner.
+    lower: Vec<[f64; 2]>,
+    /// From the left to the right upper corner.
+    upper: Vec<[f64; 2]>,
+    /// From the lower to the upper left corner.
+    across: Vec<[f64; 2]>,
+}
+
+impl Differences {
+    /// Of the values at the lower and at the upper corners, `(x, z)` each.
+    pub fn new<T: Value>(lower: &[T], upper: &[T]) -> Self {
+        let along = |row: &[T]| -> Vec<[f64; 2]> {
+            let right = row.iter().cycle().skip(2);
+            let differences: Vec<f64> =
+                row.iter().zip(right).map(|(left, right)| right.minus(*left)).collect();
+            differences.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
+        };
+        let across = upper.chunks_exact(2).zip(lower.chunks_exact(2));
+        let across = across.map(|(upper, lower)| [0, 1].map(|i| upper[i].minus(lower[i])));
+        Self { lower: along(lower), upper: along(upper), across: across.collect() }
+    }
+}
 
 /// Measures of a kind of points and the distances of their labels from the points before.
 struct Line {
@@ -61,13 +85,19 @@ struct Line {
 }
 
 impl Row {
-    /// A row that has taken over no displacements yet; `period` in m.
-    pub fn new(element: Element, columns: usize, period: f64, material: &Material) -> Self {
+    /// A row that has taken over no displacements yet; period and height of an element in m.
+    pub fn new(
+        element: Element,
+        columns: usize,
+        [period, height]: [f64; 2],
+        material: &Material,
+    ) -> Self {
         let points = POINTS * columns;
         let converted = material.rubber.rheology == Rheology::Linear;
         Self {
             element,
             width: period / columns as f64,
+            height,
             columns,
             points: vec![Point::default(); points],
             memory: vec![Memory::default(); points * material.relaxations.len()],
@@ -82,12 +112,12 @@ impl Row {
     pub fn deform(
         &mut self,
         material: &Material,
-        corners: Corners<'_>,
+        differences: &Differences,
     ) -> Result<([Vec<f64>; 2], Validity), Inverted> {
         let mut forces = [vec![0.0; 2 * self.columns], vec![0.0; 2 * self.columns]];
         let mut validity = Validity::BEST;
         for kind in 0..POINTS {
-            let line = self.line(material.rubber.rheology, corners, kind)?;
+            let line = self.line(material.rubber.rheology, differences, kind)?;
             let conjugates = self.stresses(material, &line, kind)?;
             let first = kind * self.columns;
             for (column, conjugate) in conjugates.iter().enumerate() {
@@ -112,13 +142,13 @@ impl Row {
     fn line(
         &mut self,
         rheology: Rheology,
-        corners: Corners<'_>,
+        differences: &Differences,
         kind: usize,
     ) -> Result<Line, Inverted> {
         let first = kind * self.columns;
         let mut measures = Vec::with_capacity(self.columns);
         for column in 0..self.columns {
-            let gradient = displacement_gradient(corners, &self.element.gradients[kind], column);
+            let gradient = self.displacement_gradient(differences, kind, column);
             let strain = self.points[first + column].deform(&gradient)?;
             match self.conversions.get_mut(first + column) {
                 Some(conversion) => {
@@ -128,7 +158,7 @@ impl Row {
                 None => measures.push(strain),
             }
         }
-        let spacings = self.spacings(corners, kind);
+        let spacings = self.spacings(differences, kind);
         if spacings.iter().all(|spacing| *spacing > 0.0) {
             Ok(Line { measures, spacings })
         } else {
@@ -137,11 +167,38 @@ impl Row {
     }
 
     /// Distances in m of the labels ξ of a kind of points from those before.
-    fn spacings(&self, corners: Corners<'_>, kind: usize) -> Vec<f64> {
-        let shifts = shifts(corners, kind, self.columns);
+    fn spacings(&self, differences: &Differences, kind: usize) -> Vec<f64> {
+        self.shifts(differences, kind).map(|shift| self.width - shift).collect()
+    }
+
+    /// Differences in m of the x displacements of a kind of points to those of the points before.
+    pub fn shifts(
+        &self,
+        differences: &Differences,
+        kind: usize,
+    ) -> impl Iterator<Item = f64> + use<'_> {
+        let (a, b) = PLACES[kind];
+        let Differences { lower, upper, .. } = differences;
+        let along = |column: usize| (1.0 - b) * lower[column][0] + b * upper[column][0];
+        let along: Vec<f64> = (0..self.columns).map(along).collect();
         (0..self.columns)
-            .map(|column| self.width - (shifts[column] - shifts[before(column, self.columns)]))
-            .collect()
+            .map(move |column| (1.0 - a) * along[before(column, self.columns)] + a * along[column])
+    }
+
+    /// `(q_s, q_Z, w_s, w_Z)` at a point of a column.
+    #[inline]
+    pub fn displacement_gradient(
+        &self,
+        differences: &Differences,
+        kind: usize,
+        column: usize,
+    ) -> Tensor {
+        let (a, b) = PLACES[kind];
+        let right = if column + 1 == self.columns { 0 } else { column + 1 };
+        let Differences { lower, upper, across } = differences;
+        let along = |i: usize| ((1.0 - b) * lower[column][i] + b * upper[column][i]) / self.width;
+        let up = |i: usize| ((1.0 - a) * across[column][i] + a * across[right][i]) / self.height;
+        [along(0), up(0), along(1), up(1)]
     }
 
     /// Conjugate stresses at a kind of points, and their linearised law.
@@ -181,7 +238,7 @@ impl Row {
 
     /// Power in W/m that the branches turn into heat in the state that was taken over last, at its
     /// displacements.
-    pub fn dissipation(&self, material: &Material, corners: Corners<'_>) -> f64 {
+    pub fn dissipation(&self, material: &Material, differences: &Differences) -> f64 {
         let mut power = 0.0;
         for kind in 0..POINTS {
             let points = &self.points[kind * self.columns..(kind + 1) * self.columns];
@@ -189,13 +246,12 @@ impl Row {
                 .map(|column| match self.conversions.get(kind * self.columns + column) {
                     Some(conversion) => conversion.measure.value(),
                     None => {
-                        let gradients = &self.element.gradients[kind];
-                        let gradient = displacement_gradient(corners, gradients, column);
+                        let gradient = self.displacement_gradient(differences, kind, column);
                         points[column].clone().deform(&gradient).unwrap_or([f64::NAN; 3])
                     }
                 })
                 .collect();
-            let line = Line { measures, spacings: self.spacings(corners, kind) };
+            let line = Line { measures, spacings: self.spacings(differences, kind) };
             for (spring, relaxation) in material.rubber.branches.iter().zip(&material.relaxations) {
                 relax(relaxation, &line, |column, passage| {
                     let measure = &line.measures[column];
@@ -264,39 +320,6 @@ fn relax(relaxation: &Relaxation, line: &Line, mut visit: impl FnMut(usize, &Pas
 #[inline]
 pub(super) fn before(column: usize, columns: usize) -> usize {
     if column == 0 { columns - 1 } else { column - 1 }
-}
-
-/// x displacements at a kind of points.
-pub(super) fn shifts(corners: Corners<'_>, kind: usize, columns: usize) -> Vec<f64> {
-    let (a, b) = PLACES[kind];
-    (0..columns)
-        .map(|column| {
-            let (left, right) =
-                (2 * column, 2 * if column + 1 == columns { 0 } else { column + 1 });
-            let [lower, upper] = corners.map(|row| (1.0 - a) * row[left] + a * row[right]);
-            (1.0 - b) * lower + b * upper
-        })
-        .collect()
-}
-
-/// `(q_s, q_Z, w_s, w_Z)` at a point of a column.
-#[inline]
-pub(super) fn displacement_gradient(
-    corners: Corners<'_>,
-    gradients: &[[f64; 2]; 4],
-    column: usize,
-) -> Tensor {
-    let right = if 2 * column + 2 == corners[0].len() { 0 } else { column + 1 };
-    let mut f = [0.0; 4];
-    for (node, gradient) in gradients.iter().enumerate() {
-        let at = 2 * if node % 2 == 0 { column } else { right };
-        let (x, z) = (corners[node / 2][at], corners[node / 2][at + 1]);
-        f[0] += x * gradient[0];
-        f[1] += x * gradient[1];
-        f[2] += z * gradient[0];
-        f[3] += z * gradient[1];
-    }
-    f
 }
 
 /// Factors of `N_s` and `N_Z` in the nodal force `P (N_s, A N_Z - B N_s)`.

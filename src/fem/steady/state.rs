@@ -2,15 +2,16 @@
 
 use super::super::profile::RigidProfile;
 use super::grid::Grid;
+use super::long::Long;
 
 /// A block over the profile at one pressure.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct State {
     /// Displacements in m of all nodes, `(x, z)` of each together; z of a contact node follows from
     /// its gap.
-    pub displacements: Vec<f64>,
+    pub displacements: Vec<Long>,
     /// The unknown τ in m of each contact node.
-    pub contact: Vec<f64>,
+    pub contact: Vec<Long>,
     /// Mean pressure in Pa.
     pub pressure: f64,
 }
@@ -18,14 +19,15 @@ pub(super) struct State {
 impl State {
     /// Whether the nodes touch the profile, without a barrier.
     pub fn touching(&self) -> Vec<bool> {
-        self.contact.iter().map(|tau| *tau > 0.0).collect()
+        self.contact.iter().map(|tau| tau.value() > 0.0).collect()
     }
 
     /// Mean shear of the block: the displacement of the upper edge against the contact, over the
     /// height.
     pub fn shear(&self, grid: &Grid) -> f64 {
         let contact = grid.row(&self.displacements, 0);
-        let mean = contact.iter().step_by(2).sum::<f64>() / grid.contact_nodes() as f64;
+        let mean =
+            contact.iter().step_by(2).map(|q| q.value()).sum::<f64>() / grid.contact_nodes() as f64;
         -mean / grid.height()
     }
 }

@@ -4,7 +4,7 @@ use super::super::kinematics::Tensor;
 use super::super::mesh::{CENTRE, POINTS};
 use super::flow::{Relaxation, window};
 use super::point::{Memory, Point, wide};
-use super::row::{Corners, Material, Row, before, displacement_gradient, nodal, scatter, shifts};
+use super::row::{Differences, Material, Row, nodal, scatter};
 use crate::rubber::finite_strain::Symmetric;
 
 /// Changes at a kind of points.
@@ -20,12 +20,12 @@ struct Changes {
 
 impl Row {
     /// Change of the forces at the corners for a change of the displacements.
-    pub fn tangent(&self, material: &Material, corners: Corners<'_>) -> [Vec<f64>; 2] {
+    pub fn tangent(&self, material: &Material, differences: &Differences) -> [Vec<f64>; 2] {
         let mut forces = [vec![0.0; 2 * self.columns], vec![0.0; 2 * self.columns]];
         let branches = material.relaxations.len();
         for kind in 0..POINTS {
             let points = &self.points[kind * self.columns..(kind + 1) * self.columns];
-            let mut changes = self.changes(corners, kind);
+            let mut changes = self.changes(differences, kind);
             for (k, relaxation) in material.relaxations.iter().enumerate() {
                 let start = (kind * branches + k) * self.columns;
                 let memory = &self.memory[start..start + self.columns];
@@ -48,20 +48,19 @@ impl Row {
     }
 
     /// Changes of deformation and measure, and of the stresses if no branch followed.
-    fn changes(&self, corners: Corners<'_>, kind: usize) -> Changes {
+    fn changes(&self, differences: &Differences, kind: usize) -> Changes {
         let count = self.columns;
-        let shifts = shifts(corners, kind, count);
         let mut changes = Changes {
             gradients: Vec::with_capacity(count),
             deformations: Vec::with_capacity(count),
             strains: Vec::with_capacity(count),
             measures: Vec::with_capacity(count),
-            spacings: (0..count).map(|j| shifts[before(j, count)] - shifts[j]).collect(),
+            spacings: self.shifts(differences, kind).map(|shift| -shift).collect(),
             stresses: Vec::with_capacity(count),
         };
         for column in 0..count {
             let point = &self.points[kind * count + column];
-            let gradient = displacement_gradient(corners, &self.element.gradients[kind], column);
+            let gradient = self.displacement_gradient(differences, kind, column);
             let df = point.deformation_change(&gradient);
             let strain = point.strain_change(&df);
             let measure = match self.conversions.get(kind * count + column) {

@@ -2,6 +2,7 @@
 
 use super::block::Block;
 use super::grid::Grid;
+use super::long::Long;
 use super::{BlockOptions, Setting, SteadyContact};
 use crate::fem::error::FemError;
 use crate::fem::mesh::Grading;
@@ -25,6 +26,10 @@ fn block(rubber: &Rubber, rheology: Rheology, options: &BlockOptions, speed: f64
     Block::new(Grid::new(options, PERIOD), material)
 }
 
+fn long(values: &[f64]) -> Vec<Long> {
+    values.iter().map(|value| Long::from(*value)).collect()
+}
+
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
@@ -37,10 +42,10 @@ fn homogeneous_deformation_is_in_equilibrium() {
         let mut block = block(&Rubber::table_2_1(), law, &options, 0.01);
         let grid = block.grid.clone();
         // A large shear and compression of the rows: u = (6 Z, -0.1 Z).
-        let displacements: Vec<f64> = (0..=grid.rows())
+        let displacements: Vec<Long> = (0..=grid.rows())
             .flat_map(|row| {
                 let z = grid.levels[row];
-                [6.0 * z, -0.1 * z].repeat(grid.nodes_in(row))
+                [6.0 * z, -0.1 * z].map(Long::from).repeat(grid.nodes_in(row))
             })
             .collect();
         let (forces, validity) = block.deform(&displacements).unwrap();
@@ -71,12 +76,12 @@ fn the_tangent_is_the_derivative_of_the_forces() {
             let (at, direction) = (random(0.2), random(1.0));
             let step = 1e-5;
             let mut shifted = |by: f64| {
-                let displacements: Vec<f64> =
-                    at.iter().zip(&direction).map(|(u, d)| u + by * d).collect();
+                let displacements: Vec<Long> =
+                    at.iter().zip(&direction).map(|(u, d)| (u + by * d).into()).collect();
                 block.deform(&displacements).unwrap().0
             };
             let (after, before) = (shifted(step), shifted(-step));
-            block.deform(&at).unwrap();
+            block.deform(&long(&at)).unwrap();
             let tangent = block.tangent(&direction);
             let difference: Vec<f64> = after
                 .iter()
@@ -108,7 +113,7 @@ fn the_local_tangent_is_exact_without_a_memory() {
             (0..count).map(|_| size * PERIOD / 12.0 * (generator.random::<f64>() - 0.5)).collect()
         };
         let (at, direction) = (random(0.2), random(1.0));
-        block.deform(&at).unwrap();
+        block.deform(&long(&at)).unwrap();
         let pattern = pattern(&block.grid);
         let values = Places::new(&block.grid, &pattern).assemble(&block, &pattern);
         let mut product = vec![0.0; count];

@@ -1,6 +1,7 @@
 //! Taking a state to another grid of the same block.
 
 use super::level::Level;
+use super::long::Long;
 use super::state::State;
 
 /// The state on another grid: displacements by cubics along and across the rows, forces per length and
@@ -17,21 +18,22 @@ pub(super) fn transfer(state: &State, barrier: f64, from: &Level, to: &Level) ->
                 let along = |r: usize| {
                     let nodes = old.row(&state.displacements, r);
                     let count = old.nodes_in(r);
-                    cubic(count, position * count as f64, |j| nodes[2 * j + component])
+                    cubic(count, position * count as f64, |j| nodes[2 * j + component].value())
                 };
-                displacements.push(rows.iter().map(|(r, weight)| weight * along(*r)).sum());
+                let value: f64 = rows.iter().map(|(r, weight)| weight * along(*r)).sum();
+                displacements.push(value.into());
             }
         }
     }
     let upper = to.upper_edge();
-    displacements[upper].iter_mut().step_by(2).for_each(|x| *x = 0.0);
+    displacements[upper].iter_mut().step_by(2).for_each(|x| *x = Long::default());
     let pairs = from.pairs(state, barrier);
     let (coarse, fine) = (old.contact_nodes(), new.contact_nodes());
     let ratio = coarse as f64 / fine as f64;
     let unknown = |j: usize| {
         let force = linear(coarse, j as f64 * ratio, |j| pairs.forces[j]);
         let gap = linear(coarse, j as f64 * ratio, |j| pairs.gaps[j]);
-        to.unknown(ratio * force, gap)
+        to.unknown(ratio * force, gap).into()
     };
     State { displacements, contact: (0..fine).map(unknown).collect(), pressure: state.pressure }
 }
