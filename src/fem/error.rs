@@ -75,6 +75,9 @@ impl FemError {
 pub enum PathEnd {
     /// Not even the first, slight contact converged.
     NotStarted,
+    /// At this pressure not all waves of a profile of many scales could grow, or the contact on the
+    /// whole profile did not converge.
+    NotGrown,
     /// A smaller pressure converged.
     At {
         /// Its mean pressure in Pa.
@@ -90,6 +93,7 @@ impl PathEnd {
     fn describe(&self) -> String {
         match self {
             Self::NotStarted => "before the first contact was found".into(),
+            Self::NotGrown => "before the contact on all waves of the profile converged".into(),
             Self::At { pressure, friction_coefficient, contact_area_fraction } => format!(
                 "at {:.4} MPa, where friction is {friction_coefficient:.4} and the contact area \
                  fraction {contact_area_fraction:.4}",

@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub use task::Task;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 6;
+pub const REVISION: u32 = 7;
 
 /// Section `[fem]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,7 +29,8 @@ pub struct Fem {
     /// Ratio of neighbouring pressures that are solved; friction is interpolated between them.
     pub pressure_ratio: f64,
     /// Whether the curves are solved on half the columns too, for the error by the mesh: two fifths more
-    /// work. Set by the key `tolerance` of the recipe.
+    /// work. Surfaces of many scales on at least 64 columns a wave
+    /// are solved from there in any case.
     pub estimate_mesh_error: bool,
 }
 
@@ -38,7 +39,7 @@ impl Default for Fem {
         Self {
             columns_per_shortest_wavelength: 96,
             pressure_ratio: 1.25,
-            estimate_mesh_error: false,
+            estimate_mesh_error: true,
         }
     }
 }
@@ -81,8 +82,8 @@ pub struct FemCurveRow {
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
     /// Estimated error of the friction coefficient by the mesh: its difference to that on half the
-    /// columns, three times the error where friction converges with their square; absent where that is
-    /// not solved.
+    /// columns at the same area, three times the error where friction converges with their square; absent
+    /// where that is not solved.
     #[schemars(extend("unit" = "1"))]
     pub discretisation_error: Option<f64>,
 }
@@ -117,6 +118,12 @@ pub struct FemSolveRow {
     /// Mean separation.
     #[schemars(extend("unit" = "mm"))]
     pub mean_separation_mm: f64,
+    /// Friction coefficient on half the columns, where the solution was reached from there.
+    #[schemars(extend("unit" = "1"))]
+    pub coarser_friction_coefficient: Option<f64>,
+    /// Contact area fraction on half the columns, likewise.
+    #[schemars(extend("unit" = "1"))]
+    pub coarser_contact_area_fraction: Option<f64>,
     /// Residual, relative.
     #[schemars(extend("unit" = "1"))]
     pub residual: f64,
@@ -131,7 +138,7 @@ pub struct FemSolveRow {
 
 impl Row for FemSolveRow {
     const SCHEMA: &'static str = "asperity.fem.solves";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.

@@ -37,7 +37,7 @@ pub struct Micro {
     /// Accuracy of friction by interpolation between sampled pressures, relative to the friction.
     pub tolerance: f64,
     /// Whether every sample is solved on half the columns too, for the error by the mesh: two fifths more
-    /// work. Set by the key `tolerance` of the recipe.
+    /// work.
     pub estimate_mesh_error: bool,
     /// Grid points of the macro surface on its shortest wave, at least; the grid is the next power
     /// of two.
@@ -50,7 +50,7 @@ impl Default for Micro {
             rms_slope_threshold: 1.0,
             columns_per_shortest_wavelength: 96,
             tolerance: 1e-3,
-            estimate_mesh_error: false,
+            estimate_mesh_error: true,
             points_per_shortest_macro_wavelength: 32,
         }
     }

@@ -1,6 +1,7 @@
 //! tables: friction over contact area, averaged over the realisations.
 
 mod accuracy;
+mod model_error;
 mod models;
 mod multilevel;
 mod theories;
@@ -28,7 +29,7 @@ use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 5;
+pub const REVISION: u32 = 6;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -172,19 +173,20 @@ pub struct FrictionRow {
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
     /// Estimated error of the mean by the grid, the mean of those of the realisations; absent where one
-    /// is not known, as for `hybrid` and `fem` without `tolerance`.
+    /// is not known, as for `hybrid` and `fem` where the recipe sets `estimate_mesh_error` to false.
     #[schemars(extend("unit" = "1"))]
     pub discretisation_error: Option<f64>,
     /// Bound of the change of the mean by waves that most realisations were solved without.
     #[schemars(extend("unit" = "1"))]
     pub left_out_error: f64,
-    /// Bound of the difference to all waves at finite deformation where `multilevel` solved none, 0 where it
-    /// did; absent for other models, whose difference is not bounded.
+    /// Of `multilevel` the bound of the difference to all waves at finite deformation where it solved none, 0
+    /// where it did. Of `hybrid` the difference to all waves at finite deformation that this run has, or where
+    /// it has none the share of friction that was measured on other surfaces. Absent for other models.
     #[schemars(extend("unit" = "1"))]
     pub model_error: Option<f64>,
     /// Sum of the statistical error, which is `confidence_95`, the interpolation error, the
-    /// discretisation error, that by waves left out and the model error of `multilevel`; absent where one of
-    /// them is not known.
+    /// discretisation error, that by waves left out and the model error of `hybrid` and `multilevel`; absent
+    /// where one of them is not known.
     #[schemars(extend("unit" = "1"))]
     pub error_estimate: Option<f64>,
     /// Mean pressure averaged over the realisations.
@@ -199,7 +201,7 @@ pub struct FrictionRow {
 
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 5;
+    const VERSION: u32 = 6;
 }
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
@@ -298,6 +300,7 @@ pub fn run(
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
         rows.extend(average(FEM, complete(values, &bem)));
     }
+    model_error::add(&mut rows);
     if models.multilevel {
         rows.extend(multilevel::read(run)?);
     }

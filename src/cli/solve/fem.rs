@@ -350,7 +350,9 @@ impl Fem {
 fn with_advice(of: &str, error: FemError) -> CliError {
     let advice = match &error {
         FemError::Rubber(_) | FemError::OutOfRange { .. } | FemError::Interrupted => "",
-        FemError::PathEnded { reached: PathEnd::NotStarted, .. } => "; try other --columns",
+        FemError::PathEnded { reached: PathEnd::NotStarted | PathEnd::NotGrown, .. } => {
+            "; try other --columns"
+        }
         FemError::PathEnded { reached: PathEnd::At { .. }, .. } => {
             "; try other --columns, or a pressure below that"
         }

@@ -106,8 +106,10 @@ fn reshape(path: &mut Path, profile: &RigidProfile) -> Result<usize, NotConverge
 
 #[cfg(test)]
 mod tests {
+    use super::super::SteadyContact;
+    use super::super::path::EXACT;
+    use super::super::solution::SteadySolution;
     use super::super::tests::setting;
-    use super::super::{SteadyContact, conclude};
     use super::*;
     use crate::contact::SlidingContact;
     use crate::rubber::{Rheology, Rubber};
@@ -142,7 +144,8 @@ mod tests {
         .unwrap();
         let expected = contact.solve(pressure).unwrap();
         let mut path = grow(&setting, &profile, options, pressure).unwrap();
-        let grown = conclude(&mut path, 0.01).unwrap();
+        let (state, residual) = path.finish(EXACT).unwrap();
+        let grown = SteadySolution::read(&path.level, &state, 0.01, residual);
         assert!(expected.contact_area_fraction < 0.5);
         // The residuals of both.
         assert_relative_eq!(

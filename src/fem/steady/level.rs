@@ -41,6 +41,18 @@ pub(super) struct Cost {
     pub factorisations: usize,
 }
 
+impl std::ops::Add for Cost {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            newton_steps: self.newton_steps + other.newton_steps,
+            krylov_iterations: self.krylov_iterations + other.krylov_iterations,
+            factorisations: self.factorisations + other.factorisations,
+        }
+    }
+}
+
 /// A block over a profile, with the preconditioner of its tangent.
 pub(super) struct Level {
     pub block: Block,

@@ -25,6 +25,7 @@
 //! | `level`, `newton` | the equations on one grid, and Newton's method with GMRES |
 //! | `path`, `transfer` | growing pressure, finer grids, from the barrier to the exact contact |
 //! | `growth`, `lift` | profiles of many scales: octaves that grow at constant pressure |
+//! | `ladder` | their exact contact, from coarse grids to fine ones |
 //! | [`solution`] | friction, area, separation, dissipation and fields of a solved contact |
 //! | `area` | the pressure that gives a wanted contact area |
 
@@ -34,6 +35,7 @@ mod contact;
 mod flow;
 mod grid;
 mod growth;
+mod ladder;
 mod level;
 mod lift;
 mod local;
@@ -56,6 +58,7 @@ use super::profile::RigidProfile;
 use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
 use flow::Relaxation;
+use ladder::Ladder;
 use level::Level;
 use path::Path;
 use row::Material;
@@ -176,6 +179,7 @@ pub struct SteadyContact {
     profile: RigidProfile,
     options: BlockOptions,
     path: Option<Path>,
+    ladder: Ladder,
 }
 
 /// The rubber and its speed, without a profile.
@@ -223,7 +227,12 @@ impl SteadyContact {
         options.check(profile.period())?;
         let interrupt = Interrupt::default();
         let setting = Setting { rubber: rubber.clone(), finite, speed, interrupt };
-        Ok(Self { setting, profile, options, path: None })
+        let ladder = if has_many_scales(&profile) {
+            Ladder::new(options.columns, &profile)
+        } else {
+            Ladder::none(options.columns)
+        };
+        Ok(Self { setting, profile, options, path: None, ladder })
     }
 
     /// With an interrupt that ends a solve between two Krylov iterations.
@@ -233,6 +242,7 @@ impl SteadyContact {
         if let Some(path) = &mut self.path {
             path.level.interrupt = interrupt.clone();
         }
+        self.ladder.interrupt(interrupt);
         self
     }
 
@@ -251,7 +261,10 @@ impl SteadyContact {
         }
         let solved = self.go_on(pressure).or_else(|NotConverged| self.set_out(pressure));
         match solved {
-            Ok(solution) => Ok(solution),
+            Ok(solution) => {
+                assert_eq!(solution.mean_pressure, pressure, "a solution of another pressure");
+                Ok(solution)
+            }
             // Behind an interrupt every path ends.
             Err(_) if self.setting.interrupt.is_set() => Err(FemError::Interrupted),
             Err(ended) => {
@@ -271,9 +284,12 @@ impl SteadyContact {
     /// The solution at a pressure from the points passed before, if there are any.
     fn go_on(&mut self, pressure: f64) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
-        if let Some(exact) = path.finish_nearby(pressure) {
-            return Ok(read(path, &exact, self.setting.speed));
+        if let Some(exact) = path.finish_nearby(pressure, self.ladder.path_tolerance())
+            && let Ok(solution) = self.climb(exact)
+        {
+            return Ok(solution);
         }
+        let path = self.path.as_mut().ok_or(NotConverged)?;
         path.return_towards(pressure);
         path.advance_to(pressure)?;
         self.conclude()
@@ -284,11 +300,12 @@ impl SteadyContact {
     /// where it ended, and what was known before is kept if it went further.
     fn set_out(&mut self, pressure: f64) -> Result<SteadySolution, Option<Box<Path>>> {
         let known = self.path.take();
-        let arrived = if self.profile.shortest_waves() > MOST_WAVES_FROM_A_TIP {
-            growth::grow(&self.setting, &self.profile, self.options, pressure)
+        let arrived = if has_many_scales(&self.profile) {
+            let options = BlockOptions { columns: self.ladder.path_columns(), ..self.options };
+            growth::grow(&self.setting, &self.profile, options, pressure)
                 .map(|path| self.path = Some(path))
         } else {
-            self.climb(pressure)
+            self.press(pressure)
         };
         match arrived.and_then(|()| self.conclude()) {
             Ok(solution) => Ok(solution),
@@ -301,7 +318,7 @@ impl SteadyContact {
     }
 
     /// A path in pressure; a grid on which it ends hands on what it has reached to the next one.
-    fn climb(&mut self, pressure: f64) -> Result<(), NotConverged> {
+    fn press(&mut self, pressure: f64) -> Result<(), NotConverged> {
         let first = self.setting.first_pressure(&self.profile).min(pressure);
         let mut arrived = Err(NotConverged);
         for columns in self.columns() {
@@ -344,80 +361,92 @@ impl SteadyContact {
     /// The exact solution at the point the path has reached, with all that was spent since the last
     /// one.
     fn conclude(&mut self) -> Result<SteadySolution, NotConverged> {
+        let tolerance = self.ladder.path_tolerance();
+        let exact = self.path.as_mut().ok_or(NotConverged)?.finish(tolerance)?;
+        self.climb(exact)
+    }
+
+    /// The solution on the wanted grid, from the exact contact on that of the path.
+    fn climb(&mut self, exact: (State, f64)) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
-        conclude(path, self.setting.speed)
+        let (setting, profile) = (&self.setting, &self.profile);
+        self.ladder.climb(path, exact, setting.speed, |columns| {
+            Level::new(setting, &BlockOptions { columns, ..self.options }, profile)
+        })
     }
 
     /// The highest point at which the contact converges, of the path that ended or of what was known
     /// before.
     fn last_converged(&mut self, ended: Option<Box<Path>>) -> PathEnd {
-        let speed = self.setting.speed;
+        let known = self.path.take();
         let mut reached: Option<SteadySolution> = None;
-        for path in ended.map(|path| *path).into_iter().chain(self.path.take()) {
-            let Some((path, solution)) = last_converged(path, speed) else { continue };
-            if reached.as_ref().is_none_or(|best| best.mean_pressure < solution.mean_pressure) {
-                reached = Some(solution);
+        for path in ended.map(|path| *path).into_iter().chain(known) {
+            let before = self.path.replace(path);
+            let solution = self.last_of_path();
+            // Only a path on the grid of the ladder can be gone on with.
+            let usable = self.path.as_ref().is_some_and(|path| {
+                solution.is_some()
+                    && path.level.grid().contact_nodes() == self.ladder.path_columns()
+            });
+            if !usable {
+                self.path = before;
             }
-            if path.level.grid().contact_nodes() == self.options.columns {
-                self.path = Some(path);
-            }
+            reached = match (reached, solution) {
+                (Some(best), Some(new)) if best.mean_pressure >= new.mean_pressure => Some(best),
+                (best, new) => new.or(best),
+            };
         }
-        reached.map_or(PathEnd::NotStarted, |solution| PathEnd::At {
+        let none = match has_many_scales(&self.profile) {
+            true => PathEnd::NotGrown,
+            false => PathEnd::NotStarted,
+        };
+        reached.map_or(none, |solution| PathEnd::At {
             pressure: solution.mean_pressure,
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
         })
     }
-}
 
-fn conclude(path: &mut Path, speed: f64) -> Result<SteadySolution, NotConverged> {
-    let exact = path.finish()?;
-    Ok(read(path, &exact, speed))
-}
-
-/// What an exact state and its residual say, with all that was spent since the last one.
-fn read(path: &mut Path, (state, residual): &(State, f64), speed: f64) -> SteadySolution {
-    let solution = SteadySolution::read(&path.level, state, speed, *residual);
-    let cost = path.take_cost();
-    SteadySolution {
-        newton_steps: cost.newton_steps,
-        krylov_iterations: cost.krylov_iterations,
-        ..solution
-    }
-}
-
-/// The exact solution at the last point of a path at which it converges, with the path there.
-fn last_converged(mut path: Path, speed: f64) -> Option<(Path, SteadySolution)> {
-    let mut beyond = None;
-    for _ in 0..MOST_CLOSED {
-        if let Ok(solution) = conclude(&mut path, speed) {
-            let last = match beyond {
-                Some(beyond) => last_before(&mut path, solution, beyond, speed),
-                None => solution,
-            };
-            return Some((path, last));
+    /// The exact solution at the last point of the path at which it converges; the path is there then.
+    fn last_of_path(&mut self) -> Option<SteadySolution> {
+        let mut beyond = None;
+        for _ in 0..MOST_CLOSED {
+            if let Ok(solution) = self.conclude() {
+                return Some(match beyond {
+                    Some(beyond) => self.last_before(solution, beyond),
+                    None => solution,
+                });
+            }
+            let path = self.path.as_mut()?;
+            beyond = Some(path.state.pressure);
+            path.step_back()?;
         }
-        beyond = Some(path.state.pressure);
-        path.step_back()?;
+        None
     }
-    None
+
+    /// Looks for a later exact solution than the one at the path, before a pressure at which there is
+    /// none.
+    fn last_before(&mut self, mut last: SteadySolution, mut beyond: f64) -> SteadySolution {
+        for _ in 0..MOST_HALVINGS {
+            let Some(path) = self.path.as_mut() else { break };
+            let (state, middle) = (path.state.clone(), (last.mean_pressure * beyond).sqrt());
+            match path.jump_to(middle).and_then(|()| self.conclude()) {
+                Ok(solution) => last = solution,
+                Err(NotConverged) => {
+                    beyond = middle;
+                    if let Some(path) = self.path.as_mut() {
+                        path.state = state;
+                    }
+                }
+            }
+        }
+        last
+    }
 }
 
-/// Looks for a later exact solution than the one at the path, before a pressure at which there is none.
-fn last_before(
-    path: &mut Path,
-    mut last: SteadySolution,
-    mut beyond: f64,
-    speed: f64,
-) -> SteadySolution {
-    for _ in 0..MOST_HALVINGS {
-        let (state, middle) = (path.state.clone(), (last.mean_pressure * beyond).sqrt());
-        match path.jump_to(middle).and_then(|()| conclude(path, speed)) {
-            Ok(solution) => last = solution,
-            Err(NotConverged) => (path.state, beyond) = (state, middle),
-        }
-    }
-    last
+/// Whether a profile has too many scales for a path that sets out from its highest tip.
+fn has_many_scales(profile: &RigidProfile) -> bool {
+    profile.shortest_waves() > MOST_WAVES_FROM_A_TIP
 }
 
 fn check_speed(speed: f64) -> Result<(), FemError> {

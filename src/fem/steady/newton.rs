@@ -6,10 +6,12 @@ use super::long::Long;
 use super::state::State;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, flexible_gmres};
 
-/// Relative accuracy of the linear solves.
-const LINEAR_TOLERANCE: f64 = 1e-2;
+/// Relative accuracy of the linear solves: the first one as long as the residual is above [`NEAR`] and the
+/// linearised law is further from the law than that.
+const LINEAR_TOLERANCE: [f64; 2] = [0.1, 1e-2];
+const NEAR: f64 = 0.05;
 /// Krylov iterations beyond which factors of an earlier state are renewed.
-const MOST_WITH_OLD_FACTORS: usize = 18;
+const MOST_WITH_OLD_FACTORS: usize = 12;
 /// Krylov iterations of one linear solve.
 const MOST_ITERATIONS: usize = 120;
 /// Largest change of a contact unknown in a step, in periods.
@@ -23,6 +25,8 @@ const GROWTH: [f64; 2] = [10.0, 2.0];
 const SLIGHT: f64 = 0.1;
 /// A solve is given up where the residual is above the first number from as many steps on as the second.
 const HOPELESS: [(f64, usize); 2] = [(5.0, 5), (1.0, 8)];
+/// The same where the residual is that many times the one at the start, from as many steps on.
+const GROWN: (f64, usize) = (4.0, 3);
 /// Parts of det F and of A that a step must leave.
 const LEFT_OF_VOLUME: f64 = 0.2;
 const LEFT_OF_LABEL: f64 = 0.1;
@@ -49,6 +53,7 @@ impl Level {
         let mut now = State { pressure: target.pressure, ..state.clone() };
         self.factored = false;
         let mut balance = self.balance(&mut now, target.barrier)?;
+        let first = balance.norm;
         let mut touching: Vec<bool> = Vec::new();
         for step in 0..=target.most_steps {
             let settled = target.barrier > 0.0 || {
@@ -60,7 +65,8 @@ impl Level {
                 return Ok((step, balance.norm));
             }
             let hopeless =
-                HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
+                HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm)
+                    || step >= GROWN.1 && balance.norm > GROWN.0 * first.max(1.0);
             if step == target.most_steps || hopeless || self.interrupt.is_set() {
                 break;
             }
@@ -76,7 +82,8 @@ impl Level {
     /// Newton's direction. Old factors are tried first unless the contact has changed.
     fn direction(&mut self, balance: &Balance, settled: bool) -> Result<Vec<f64>, NotConverged> {
         let right: Vec<f64> = balance.residual.iter().map(|r| -r).collect();
-        let tolerance = LINEAR_TOLERANCE * euclidean_norm(&right);
+        let relative = LINEAR_TOLERANCE[usize::from(balance.norm < NEAR)];
+        let tolerance = relative * euclidean_norm(&right);
         if self.factored && settled {
             let (change, left) = self.krylov(balance, &right, tolerance, MOST_WITH_OLD_FACTORS);
             if left <= tolerance {

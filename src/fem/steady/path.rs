@@ -12,8 +12,10 @@ const BARRIER: f64 = 3e-2;
 /// Barrier with which a block is put above the profile.
 const FIRST_BARRIER: f64 = 0.3;
 /// Residual of a point behind the barrier, and of a solution.
-const LOOSE: f64 = 1e-2;
+const LOOSE: f64 = 1e-1;
 pub(super) const EXACT: f64 = 1e-9;
+/// Residual of an exact contact that a finer grid starts from.
+pub(super) const EXACT_ENOUGH: f64 = 1e-5;
 /// Newton steps of a point on a path, of the first one, on a new grid, and to the exact contact.
 const MOST_STEPS: usize = 14;
 const MOST_FIRST_STEPS: usize = 20;
@@ -49,6 +51,8 @@ pub(super) struct Path {
     passed: Vec<State>,
     /// The exact contact found last.
     exact: Option<State>,
+    /// Step in ln p from one exact contact to the next that went well last.
+    step: f64,
 }
 
 impl Path {
@@ -62,6 +66,7 @@ impl Path {
                     ratio: FIRST_RATIO,
                     passed: Vec::new(),
                     exact: None,
+                    step: NEARBY,
                 });
             }
         }
@@ -88,7 +93,8 @@ impl Path {
                     }
                 }
                 Err(NotConverged) => {
-                    self.ratio = self.ratio.sqrt();
+                    // Half of the step that failed, which the pressure may have shortened.
+                    self.ratio = (next / at).max(at / next).sqrt();
                     if self.ratio < SMALLEST_RATIO || self.level.interrupt.is_set() {
                         self.ratio = self.ratio.max(SMALLEST_RATIO);
                         return Err(NotConverged);
@@ -126,7 +132,7 @@ impl Path {
     /// Takes the state to another level of the same profile.
     pub fn refine(&mut self, mut level: Level) -> Result<(), NotConverged> {
         level.cost = self.level.cost;
-        let mut state = transfer(&self.state, BARRIER, &self.level, &level);
+        let mut state = self.state_on(&level);
         let target =
             Target { most_steps: MOST_STEPS_ON_NEW_GRID, ..behind(state.pressure, BARRIER) };
         let solved = level.solve(&mut state, target);
@@ -134,7 +140,8 @@ impl Path {
             self.level.cost = level.cost;
             return Err(NotConverged);
         }
-        *self = Self { level, state, ratio: self.ratio, passed: Vec::new(), exact: None };
+        *self =
+            Self { level, state, ratio: self.ratio, passed: Vec::new(), exact: None, step: NEARBY };
         Ok(())
     }
 
@@ -144,34 +151,44 @@ impl Path {
         Ok(self.level.solve(&mut self.state, target)?.0)
     }
 
-    /// The exact contact at the pressure of the path, and its residual.
-    pub fn finish(&mut self) -> Result<(State, f64), NotConverged> {
-        let mut state = self.state.clone();
-        let mut barrier = BARRIER * LESS_BARRIER;
-        let level = &mut self.level;
-        reduce(level, &mut state, BARRIER, barrier)?;
-        let target = exactly(state.pressure);
-        for _ in 0..MOST_CLOSINGS {
-            reduce(level, &mut state, barrier, barrier * LESS_BARRIER)?;
-            barrier *= LESS_BARRIER;
-            if let Ok((_, residual)) = level.solve(&mut state, target) {
-                self.exact = Some(state.clone());
-                return Ok((state, residual));
-            }
-        }
-        Err(NotConverged)
+    /// The state on another grid of the same profile.
+    pub fn state_on(&self, level: &Level) -> State {
+        transfer(&self.state, BARRIER, &self.level, level)
     }
 
-    /// The exact contact at a pressure near that of the one found last, straight from it, and its
-    /// residual.
-    pub fn finish_nearby(&mut self, pressure: f64) -> Option<(State, f64)> {
+    /// The exact contact at the pressure of the path, and its residual.
+    pub fn finish(&mut self, tolerance: f64) -> Result<(State, f64), NotConverged> {
+        let (state, residual) = close(&mut self.level, self.state.clone(), tolerance)?;
+        self.exact = Some(state.clone());
+        Ok((state, residual))
+    }
+
+    /// The exact contact at a pressure near that of the one found last, in as few steps from it as the
+    /// contact allows, and its residual.
+    pub fn finish_nearby(&mut self, pressure: f64, tolerance: f64) -> Option<(State, f64)> {
         let mut state = self.exact.clone()?;
-        if (state.pressure / pressure).ln().abs() > NEARBY {
+        let whole = (pressure / state.pressure).ln();
+        if whole.abs() > NEARBY {
             return None;
         }
-        let level = &mut self.level;
-        level.solve(&mut state, behind(pressure, NEARBY_BARRIER)).ok()?;
-        let (_, residual) = level.solve(&mut state, exactly(pressure)).ok()?;
+        let mut step = whole.signum() * self.step;
+        while state.pressure != pressure {
+            let left = (pressure / state.pressure).ln();
+            let next = if left.abs() > 1.001 * step.abs() {
+                state.pressure * step.exp()
+            } else {
+                pressure
+            };
+            if self.level.solve(&mut state, behind(next, NEARBY_BARRIER)).is_err() {
+                step = 0.5 * left.abs().min(step.abs()).copysign(left);
+                if step.abs() < SMALLEST_RATIO.ln() || self.level.interrupt.is_set() {
+                    return None;
+                }
+            }
+        }
+        self.step = (1.5 * step.abs()).min(NEARBY);
+        let (state, residual) =
+            close_from(&mut self.level, state, NEARBY_BARRIER, tolerance).ok()?;
         self.exact = Some(state.clone());
         Some((state, residual))
     }
@@ -196,8 +213,45 @@ fn first_contact(level: &mut Level, pressure: f64) -> Result<State, NotConverged
     Ok(state)
 }
 
-fn exactly(pressure: f64) -> Target {
-    Target { pressure, barrier: 0.0, tolerance: EXACT, most_steps: MOST_STEPS_TO_EXACT }
+/// The exact contact and its residual, from a state behind the barrier of a path.
+pub(super) fn close(
+    level: &mut Level,
+    mut state: State,
+    tolerance: f64,
+) -> Result<(State, f64), NotConverged> {
+    let barrier = BARRIER * LESS_BARRIER;
+    reduce(level, &mut state, BARRIER, barrier)?;
+    close_from(level, state, barrier, tolerance)
+}
+
+/// The exact contact and its residual, from a state that is nearly it.
+pub(super) fn close_nearby(
+    level: &mut Level,
+    mut state: State,
+    tolerance: f64,
+) -> Result<(State, f64), NotConverged> {
+    let target = behind(state.pressure, NEARBY_BARRIER);
+    level.solve(&mut state, target)?;
+    close_from(level, state, NEARBY_BARRIER, tolerance)
+}
+
+/// The exact contact and its residual, from a state behind a small barrier.
+fn close_from(
+    level: &mut Level,
+    mut state: State,
+    mut barrier: f64,
+    tolerance: f64,
+) -> Result<(State, f64), NotConverged> {
+    let (pressure, most_steps) = (state.pressure, MOST_STEPS_TO_EXACT);
+    let target = Target { pressure, barrier: 0.0, tolerance, most_steps };
+    for _ in 0..MOST_CLOSINGS {
+        reduce(level, &mut state, barrier, barrier * LESS_BARRIER)?;
+        barrier *= LESS_BARRIER;
+        if let Ok((_, residual)) = level.solve(&mut state, target) {
+            return Ok((state, residual));
+        }
+    }
+    Err(NotConverged)
 }
 
 /// Takes a state from one barrier to a smaller one.

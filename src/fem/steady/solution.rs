@@ -29,8 +29,19 @@ pub struct SteadySolution {
     pub krylov_iterations: usize,
     /// Columns and rows of the mesh.
     pub elements: [usize; 2],
+    /// What half the columns say, where the solution was reached from there.
+    pub coarser: Option<Coarser>,
     /// The contact nodes.
     pub nodes: Vec<ContactNode>,
+}
+
+/// The same contact on half the columns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coarser {
+    /// Its friction coefficient.
+    pub friction_coefficient: f64,
+    /// Its contact area fraction.
+    pub contact_area_fraction: f64,
 }
 
 /// A node of the deformed surface.
@@ -79,8 +90,15 @@ impl SteadySolution {
             newton_steps: 0,
             krylov_iterations: 0,
             elements: [n, grid.rows()],
+            coarser: None,
             nodes,
         }
+    }
+
+    /// The solution with what a coarser grid says.
+    pub(super) fn above(self, coarser: &Self) -> Self {
+        let &Self { friction_coefficient, contact_area_fraction, .. } = coarser;
+        Self { coarser: Some(Coarser { friction_coefficient, contact_area_fraction }), ..self }
     }
 }
 

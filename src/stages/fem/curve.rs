@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Revision of the solver: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 4;
+const SOLVER_REVISION: u32 = 5;
 
 /// The curve of one surface at one speed.
 pub(crate) struct CurveResult {
@@ -78,7 +78,8 @@ impl<'a> Solver<'a> {
     }
 
     /// Solves pressures at the ratio of the recipe, from below the smallest to above the largest
-    /// area; returns why the path ended before that, if it did.
+    /// area; returns why the path ended before that, if it did. A pressure without a solution may have one
+    /// close by, so half the step is tried before the sweep ends.
     pub fn sweep(&mut self, areas: &[f64], guess: f64) -> Result<Option<FemError>, SolveError> {
         let (smallest, largest) = (areas[0], areas[areas.len() - 1]);
         let mut pressure = guess;
@@ -92,12 +93,17 @@ impl<'a> Solver<'a> {
         let mut area = last.map_or(0.0, |row| row.contact_area_fraction);
         let mut ended = None;
         while area < largest && self.solves.len() < MOST_SOLVES {
-            pressure *= self.ratio;
-            match self.point(pressure) {
-                Ok(row) => area = row.contact_area_fraction,
+            let step = if ended.is_none() { self.ratio } else { self.ratio.sqrt() };
+            match self.point(pressure * step) {
+                Ok(row) => {
+                    pressure *= step;
+                    area = row.contact_area_fraction;
+                    ended = None;
+                }
                 Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
-                    ended = Some(error);
-                    break;
+                    if ended.replace(error).is_some() {
+                        break;
+                    }
                 }
                 Err(error) => return Err(error),
             }
@@ -141,6 +147,19 @@ impl<'a> Solver<'a> {
         })
     }
 
+    /// The same on half the columns, where the solutions were reached from there.
+    pub fn coarser_values(&self, areas: &[f64]) -> Option<Vec<FemCurveRow>> {
+        let coarser = |row: &FemSolveRow| {
+            Some(FemSolveRow {
+                friction_coefficient: row.coarser_friction_coefficient?,
+                contact_area_fraction: row.coarser_contact_area_fraction?,
+                ..row.clone()
+            })
+        };
+        let solves: Option<Vec<FemSolveRow>> = self.solves.iter().map(coarser).collect();
+        solves.map(|solves| values_at(areas, &solves, |row| row))
+    }
+
     fn point(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
         if self.watch.check_interrupt().is_err() {
             return Err(SolveError::Interrupted);
@@ -178,6 +197,8 @@ impl<'a> Solver<'a> {
             friction_from_heat: solution.hysteretic_friction,
             contact_area_fraction: solution.contact_area_fraction,
             mean_separation_mm: solution.mean_separation * 1e3,
+            coarser_friction_coefficient: solution.coarser.map(|half| half.friction_coefficient),
+            coarser_contact_area_fraction: solution.coarser.map(|half| half.contact_area_fraction),
             residual: solution.residual,
             newton_steps: solution.newton_steps as u64,
             columns: self.columns as u64,
@@ -282,6 +303,8 @@ mod tests {
             friction_from_heat: friction_coefficient,
             contact_area_fraction: area,
             mean_separation_mm: 0.04,
+            coarser_friction_coefficient: None,
+            coarser_contact_area_fraction: None,
             residual: 0.0,
             newton_steps: 5,
             columns: 256,

@@ -120,7 +120,9 @@ impl Task {
             other => other.map_err(failed)?,
         };
         let mut rows = solver.values(area_fractions);
-        if parameters.estimate_mesh_error {
+        if let Some(coarser) = solver.coarser_values(area_fractions) {
+            add_mesh_errors(&mut rows, &coarser);
+        } else if parameters.estimate_mesh_error {
             let mut coarser = new((columns / 2).max(*COLUMNS_RANGE.start())).map_err(failed)?;
             match coarser.sweep(area_fractions, *first_guess) {
                 Ok(_) | Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
