@@ -1,6 +1,6 @@
 //! Kinematics in the plane.
 
-use crate::rubber::finite_strain::Symmetric;
+use crate::rubber::finite_strain::{Scalar, Symmetric};
 
 /// A tensor in the plane: components xx, xz, zx, zz.
 pub type Tensor = [f64; 4];
@@ -17,12 +17,9 @@ pub fn green_strain(h: &Tensor) -> Symmetric {
 
 /// Change of the right Cauchy-Green tensor for a change of the deformation.
 #[inline]
-pub fn strain_change(f: &Tensor, df: &Tensor) -> Symmetric {
-    [
-        2.0 * (f[0] * df[0] + f[2] * df[2]),
-        2.0 * (f[1] * df[1] + f[3] * df[3]),
-        f[0] * df[1] + f[2] * df[3] + df[0] * f[1] + df[2] * f[3],
-    ]
+pub fn strain_change<T: Scalar>(f: &[T; 4], df: &[T; 4]) -> [T; 3] {
+    let (xx, zz) = (f[0] * df[0] + f[2] * df[2], f[1] * df[1] + f[3] * df[3]);
+    [xx + xx, zz + zz, f[0] * df[1] + f[2] * df[3] + df[0] * f[1] + df[2] * f[3]]
 }
 
 /// Change of `C` when a node moves along x (0) or z (1) by one; `gradient` is that of its shape

@@ -32,7 +32,7 @@ mod tests;
 pub use logarithm::Logarithm;
 pub use measure::Measure;
 pub use symmetric::{
-    IDENTITY, Symmetric, contract, determinant, dilatation, dilatation_difference, inverse,
+    IDENTITY, Scalar, Symmetric, contract, determinant, dilatation, dilatation_difference, inverse,
     one_plus, sandwich,
 };
 

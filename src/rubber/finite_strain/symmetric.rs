@@ -1,7 +1,20 @@
 //! Symmetric tensors in the plane.
 
+use std::ops::{Add, Div, Mul, Sub};
+
 /// A symmetric tensor in the plane: components xx, zz, xz.
 pub type Symmetric = [f64; 3];
+
+/// What tensors consist of: a number, or several side by side.
+pub trait Scalar:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+}
+
+impl<T> Scalar for T where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>
+{
+}
 
 /// The unit tensor.
 pub const IDENTITY: Symmetric = [1.0, 1.0, 0.0];
@@ -33,13 +46,15 @@ pub fn one_plus(a: &Symmetric) -> Symmetric {
 }
 
 /// Double contraction `a : b`.
-pub fn contract(a: &Symmetric, b: &Symmetric) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2]
+#[inline]
+pub fn contract<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
+    let off = a[2] * b[2];
+    a[0] * b[0] + a[1] * b[1] + (off + off)
 }
 
 /// The product `G X G` of two symmetric tensors, which is symmetric.
 #[inline]
-pub fn sandwich(g: &Symmetric, x: &Symmetric) -> Symmetric {
+pub fn sandwich<T: Scalar>(g: &[T; 3], x: &[T; 3]) -> [T; 3] {
     // Rows of G X first.
     let (xx, xz) = (g[0] * x[0] + g[2] * x[2], g[0] * x[2] + g[2] * x[1]);
     let (zx, zz) = (g[2] * x[0] + g[1] * x[2], g[2] * x[2] + g[1] * x[1]);
