@@ -15,7 +15,7 @@
 use super::super::kinematics::Tensor;
 use super::super::mesh::{CENTRE, POINTS};
 use super::flow::Weights;
-use super::point::{Memory, wide};
+use super::point::Memory;
 use super::row::{Material, Row, before};
 use super::tangent::stress_change;
 use crate::rubber::finite_strain::Symmetric;
@@ -55,7 +55,7 @@ impl Row {
 
     fn unit(&self, kind: usize, column: usize) -> Unit {
         let index = kind * self.columns + column;
-        let (point, conversion) = (&self.points[index], self.conversions.get(index));
+        let (point, conversion) = (self.point(kind, column), self.conversions.get(index));
         let mut unit = Unit {
             gradient: [[0.0; 4]; 8],
             deformation: [[0.0; 4]; 8],
@@ -85,19 +85,19 @@ impl Row {
         angle: f64,
     ) -> ([Symmetric; 3], [Symmetric; 3]) {
         let volumetric = kind == CENTRE;
-        let point = &self.points[kind * self.columns + column];
+        let point = self.point(kind, column);
         let branches = material.relaxations.len();
         let units = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut own = units.map(|unit| point.own_stress(volumetric, &unit));
         let mut upstream = [[0.0; 3]; 3];
         for k in 0..branches {
-            let memory = &self.memory[(kind * branches + k) * self.columns + column];
-            let (here, there) = shares(memory, angle);
+            let memory = self.memory(kind, [k, column]);
+            let (here, there) = shares(&memory, angle);
             for (unit, (own, upstream)) in units.iter().zip(own.iter_mut().zip(&mut upstream)) {
-                let stress = memory.stress(volumetric, point, unit);
+                let relief = memory.relief(volumetric, &point, unit);
                 for i in 0..3 {
-                    own[i] += here * stress[i];
-                    upstream[i] += there * stress[i];
+                    own[i] -= here * relief[i];
+                    upstream[i] -= there * relief[i];
                 }
             }
         }
@@ -112,15 +112,14 @@ impl Row {
         unit: &Unit,
         law: &[Symmetric; 3],
     ) {
-        let index = kind * self.columns + column;
-        let point = &self.points[index];
+        let (index, point) = (kind * self.columns + column, self.point(kind, column));
         for at in 0..8 {
             let conjugate = apply(law, &unit.measure[at]);
             let stress = match self.conversions.get(index) {
                 Some(conversion) => conversion.stress_change(&conjugate, &unit.strain[at]),
                 None => conjugate,
             };
-            let total = stress_change(point, &unit.deformation[at], &stress, &unit.gradient[at]);
+            let total = stress_change(&point, &unit.deformation[at], &stress, &unit.gradient[at]);
             self.add(local, kind, at, &total);
         }
     }
@@ -133,14 +132,14 @@ impl Row {
         unit: &Unit,
         law: &[Symmetric; 3],
     ) {
-        let index = kind * self.columns + column;
+        let (index, point) = (kind * self.columns + column, self.point(kind, column));
         for at in 0..8 {
             let conjugate = apply(law, &unit.measure[at]);
             let stress = match self.conversions.get(index) {
                 Some(conversion) => conversion.measure.derivative(&conjugate),
                 None => conjugate,
             };
-            let total = stress_change(&self.points[index], &[0.0; 4], &stress, &[0.0; 4]);
+            let total = stress_change(&point, &[0.0; 4], &stress, &[0.0; 4]);
             self.add(local, kind, UPSTREAM[at / 2] + at % 2, &total);
         }
     }
@@ -161,7 +160,7 @@ fn apply(law: &[Symmetric; 3], measure: &Symmetric) -> Symmetric {
 
 /// Shares of its own point and of the one before that a branch follows.
 fn shares(memory: &Memory, angle: f64) -> (f64, f64) {
-    let weights = Weights { decay: 1.0 - f64::from(memory.forgotten), of: wide(&memory.weights) };
+    let weights = Weights { decay: 1.0 - memory.forgotten, of: memory.weights };
     let response = weights.response(angle);
     let upstream = -response.im / angle.sin();
     (response.re - upstream * angle.cos(), upstream)

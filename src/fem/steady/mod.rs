@@ -19,6 +19,7 @@
 //! | `grid` | rows of nodes and elements; fewer columns away from the contact |
 //! | `flow` | the flow rule along a row of unequally spaced labels |
 //! | `point`, `row`, `tangent`, `block` | internal forces and their tangent with relaxation history |
+//! | `lanes` | points of an element side by side in vector registers |
 //! | `long` | displacements with the digits that double precision rounds off |
 //! | `contact` | force and gap of a node from one smooth unknown |
 //! | `local`, `stiffness` | the preconditioner: sparse factors of tangents with a short memory |
@@ -36,6 +37,7 @@ mod flow;
 mod grid;
 mod growth;
 mod ladder;
+mod lanes;
 mod level;
 mod lift;
 mod local;

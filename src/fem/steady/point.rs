@@ -11,9 +11,10 @@
 
 use super::super::kinematics::{Tensor, green_strain, strain_change};
 use super::Inverted;
+use super::lanes::{Lanes, lane, set_lane};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Measure, Rheology, Spring, Symmetric, contract, dilatation,
-    inverse, one_plus, sandwich,
+    FiniteStrainRubber, IDENTITY, Measure, Rheology, Scalar, Spring, Symmetric, contract,
+    dilatation, inverse, one_plus, sandwich,
 };
 
 /// Smallest `A` and `Q` of an element that is taken for valid.
@@ -27,45 +28,34 @@ const LEAST: f64 = 1e-3;
 /// ```
 ///
 /// with `G = C⁻¹` and `G_k = C_k⁻¹` under neo-Hooke; under the linear law both are unit tensors and
-/// σ vanishes. Coefficients are in single precision: they make directions, not solutions.
+/// σ vanishes. Forces follow in double precision; what a row keeps for its tangent is in single
+/// precision: it makes directions, not solutions.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Point {
+pub(super) struct Point<T = f64> {
     /// A and B.
-    pub label: [f64; 2],
-    pub deformation: Tensor,
+    pub label: [T; 2],
+    pub deformation: [T; 4],
     /// S.
-    pub stress: Symmetric,
+    pub stress: [T; 3],
     /// G.
-    pub metric: [f32; 3],
+    pub metric: [T; 3],
     /// μ or c.
-    pub modulus: f32,
+    pub modulus: T,
     /// σ.
-    pub pressure: f32,
+    pub pressure: T,
 }
 
 /// A branch at a point: its part in the linearised law and the flow rule up to the point.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Memory {
-    /// `G_k`.
-    pub metric: [f32; 3],
-    /// `μ_k` or `c_k`.
-    pub modulus: f32,
+pub(super) struct Memory<T = f64> {
+    /// `√μ_k G_k` or `c_k G_k`: with its modulus in it, a branch takes less space.
+    pub metric: [T; 3],
     /// `1 - e^{-a}`: what is forgotten from the point before.
-    pub forgotten: f32,
+    pub forgotten: T,
     /// Weights of the measures at `n-2` to `n+1`.
-    pub weights: [f32; 4],
+    pub weights: [T; 4],
     /// Change of the internal measure by that of the distance from the point before, in 1/m.
-    pub source: [f32; 3],
-}
-
-#[inline]
-pub(super) fn wide<const N: usize>(values: &[f32; N]) -> [f64; N] {
-    values.map(f64::from)
-}
-
-#[inline]
-pub(super) fn narrow<const N: usize>(values: &[f64; N]) -> [f32; N] {
-    values.map(|value| value as f32)
+    pub source: [T; 3],
 }
 
 impl Point {
@@ -90,40 +80,41 @@ impl Point {
         let f = &self.deformation;
         f[0] * f[3] - f[1] * f[2]
     }
+}
 
+impl<T: Scalar> Point<T> {
     /// Change of the deformation gradient by that of the gradient `(q_s, q_Z, w_s, w_Z)`.
     #[inline]
-    pub fn deformation_change(&self, gradient: &Tensor) -> Tensor {
-        let [a, b] = self.label;
+    pub fn deformation_change(&self, gradient: &[T; 4]) -> [T; 4] {
+        let [_, b] = self.label;
         let f = &self.deformation;
         let [q_s, q_z, w_s, w_z] = *gradient;
-        let along = [f[0] * q_s / a, (w_s + f[2] * q_s) / a];
+        // 1/A is the first component of F.
+        let along = [f[0] * q_s * f[0], (w_s + f[2] * q_s) * f[0]];
         [along[0], f[0] * q_z - along[0] * b, along[1], w_z + f[2] * q_z - along[1] * b]
     }
 
     /// Change of C by that of the deformation gradient.
     #[inline]
-    pub fn strain_change(&self, df: &Tensor) -> Symmetric {
+    pub fn strain_change(&self, df: &[T; 4]) -> [T; 3] {
         strain_change(&self.deformation, df)
     }
 
     /// Change of the stress that the point's own measure makes, if no branch followed.
     #[inline]
-    pub fn own_stress(&self, volumetric: bool, measure: &Symmetric) -> Symmetric {
-        let metric = wide(&self.metric);
-        let congruent = sandwich(&metric, measure);
+    pub fn own_stress(&self, volumetric: bool, measure: &[T; 3]) -> [T; 3] {
+        let congruent = sandwich(&self.metric, measure);
         if volumetric {
-            let pressure = f64::from(self.modulus) * contract(&metric, measure);
-            let own = f64::from(self.pressure);
-            [0, 1, 2].map(|i| pressure * metric[i] - own * congruent[i])
+            let pressure = self.modulus * contract(&self.metric, measure);
+            [0, 1, 2].map(|i| pressure * self.metric[i] - self.pressure * congruent[i])
         } else {
-            congruent.map(|s| f64::from(self.modulus) * s)
+            congruent.map(|s| self.modulus * s)
         }
     }
 
     /// `P = F S` in xX, xZ, zX, zZ.
     #[inline]
-    pub fn first_stress(f: &Tensor, s: &Symmetric) -> Tensor {
+    pub fn first_stress(f: &[T; 4], s: &[T; 3]) -> [T; 4] {
         [
             f[0] * s[0] + f[1] * s[2],
             f[0] * s[2] + f[1] * s[1],
@@ -133,17 +124,75 @@ impl Point {
     }
 }
 
-impl Memory {
-    /// Change of the stress by that of the internal measure.
-    #[inline]
-    pub fn stress(&self, volumetric: bool, point: &Point, change: &Symmetric) -> Symmetric {
-        let (metric, modulus) = (wide(&self.metric), f64::from(self.modulus));
-        if volumetric {
-            let pressure = modulus * contract(&metric, change);
-            wide(&point.metric).map(|g| -pressure * g)
-        } else {
-            sandwich(&metric, change).map(|s| -modulus * s)
+impl<T: Lanes> Point<T> {
+    pub fn lane(&self, at: usize) -> Point {
+        Point {
+            label: lane(&self.label, at),
+            deformation: lane(&self.deformation, at),
+            stress: lane(&self.stress, at),
+            metric: lane(&self.metric, at),
+            modulus: self.modulus.lane(at),
+            pressure: self.pressure.lane(at),
         }
+    }
+
+    pub fn set_lane(&mut self, at: usize, point: &Point) {
+        set_lane(&mut self.label, at, &point.label);
+        set_lane(&mut self.deformation, at, &point.deformation);
+        set_lane(&mut self.stress, at, &point.stress);
+        set_lane(&mut self.metric, at, &point.metric);
+        self.modulus.set_lane(at, point.modulus);
+        self.pressure.set_lane(at, point.pressure);
+    }
+}
+
+impl<T: Scalar> Memory<T> {
+    /// What the measures at `n-2` to `n+1` and the distance from the point before, which is shorter
+    /// by `shift`, add to the internal measure.
+    #[inline]
+    pub fn input(&self, measures: &[[T; 3]; 4], shift: T) -> [T; 3] {
+        let ([w0, w1, w2, w3], [m0, m1, m2, m3]) = (&self.weights, measures);
+        let of = |i: usize| {
+            let measured = (*w0 * m0[i] + *w1 * m1[i]) + (*w2 * m2[i] + *w3 * m3[i]);
+            measured - self.source[i] * shift
+        };
+        // An array's `map` does not inline this.
+        [of(0), of(1), of(2)]
+    }
+
+    /// The internal measure after that of the point before.
+    #[inline]
+    pub fn step(&self, before: &[T; 3], input: &[T; 3]) -> [T; 3] {
+        [0, 1, 2].map(|i| before[i] + (input[i] - self.forgotten * before[i]))
+    }
+
+    /// The stress that a change of the internal measure takes away.
+    #[inline]
+    pub fn relief(&self, volumetric: bool, point: &Point<T>, change: &[T; 3]) -> [T; 3] {
+        if volumetric {
+            let pressure = contract(&self.metric, change);
+            point.metric.map(|g| pressure * g)
+        } else {
+            sandwich(&self.metric, change)
+        }
+    }
+}
+
+impl<T: Lanes> Memory<T> {
+    pub fn lane(&self, at: usize) -> Memory {
+        Memory {
+            metric: lane(&self.metric, at),
+            forgotten: self.forgotten.lane(at),
+            weights: lane(&self.weights, at),
+            source: lane(&self.source, at),
+        }
+    }
+
+    pub fn set_lane(&mut self, at: usize, memory: &Memory) {
+        set_lane(&mut self.metric, at, &memory.metric);
+        self.forgotten.set_lane(at, memory.forgotten);
+        set_lane(&mut self.weights, at, &memory.weights);
+        set_lane(&mut self.source, at, &memory.source);
     }
 }
 
@@ -163,9 +212,9 @@ impl Law<'_> {
     ) -> Result<Symmetric, Inverted> {
         let spring = &self.rubber.equilibrium;
         let (metric, volume) = metric(self.rubber.rheology, measure)?;
-        point.metric = narrow(&metric);
-        point.modulus = self.modulus(spring, volume) as f32;
-        point.pressure = self.pressure(spring, volume) as f32;
+        point.metric = metric;
+        point.modulus = self.modulus(spring, volume);
+        point.pressure = self.pressure(spring, volume);
         Ok(self.stress(spring, measure, &[0.0; 3]))
     }
 
@@ -184,10 +233,11 @@ impl Law<'_> {
             Rheology::NeoHookean => (1.0 + dilatation(measure)) / past,
             Rheology::Linear => 1.0,
         };
-        memory.metric = narrow(&metric);
-        memory.modulus = self.modulus(spring, volume) as f32;
-        point.modulus += memory.modulus;
-        point.pressure += self.pressure(spring, volume) as f32;
+        let modulus = self.modulus(spring, volume);
+        let factor = if self.volumetric { modulus } else { modulus.sqrt() };
+        memory.metric = metric.map(|g| factor * g);
+        point.modulus += modulus;
+        point.pressure += self.pressure(spring, volume);
         let part = self.stress(spring, measure, internal);
         (0..3).for_each(|i| stress[i] += part[i]);
         Ok(())

@@ -4,13 +4,14 @@
 //! kind in all elements of the row, so a row is the smallest piece whose forces follow from its
 //! displacements.
 
-use super::super::kinematics::Tensor;
-use super::super::mesh::{CENTRE, Element, PLACES, POINTS};
+use super::super::mesh::{CENTRE, Element, POINTS};
 use super::Inverted;
 use super::flow::{Relaxation, Weights, window};
+use super::lanes::{Lanes, Rule};
 use super::long::Value;
-use super::point::{Conversion, Law, Memory, Point, narrow};
-use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Symmetric};
+use super::point::{Conversion, Law, Memory, Point};
+use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric};
+use wide::f32x4;
 
 /// What all rows share: the rubber and its memory at one speed.
 #[derive(Debug, Clone)]
@@ -37,6 +38,24 @@ impl Validity {
     }
 }
 
+/// Deformation, stress and linearised law at points of a row, in all lanes.
+#[derive(Debug, Clone)]
+pub(super) struct Linearised<T> {
+    /// One a column.
+    pub points: Vec<Point<T>>,
+    /// One branch after another, columns first.
+    pub memory: Vec<Memory<T>>,
+}
+
+impl<T: Lanes> Linearised<T> {
+    fn new(columns: usize, branches: usize) -> Self {
+        Self {
+            points: vec![Point::default(); columns],
+            memory: vec![Memory::default(); branches * columns],
+        }
+    }
+}
+
 /// Deformation, stress and linearised law of a row of elements.
 #[derive(Debug, Clone)]
 pub(super) struct Row {
@@ -45,11 +64,10 @@ pub(super) struct Row {
     pub width: f64,
     pub height: f64,
     pub columns: usize,
-    /// Points of one kind after another, columns first.
-    pub points: Vec<Point>,
-    /// Branches of one kind of points after another, columns first.
-    pub memory: Vec<Memory>,
-    /// As the points, under the linear law alone.
+    /// At the Gauss points.
+    pub gauss: Linearised<f32x4>,
+    pub centre: Linearised<f32>,
+    /// One kind of points after another, columns first; under the linear law alone.
     pub conversions: Vec<Conversion>,
 }
 
@@ -99,8 +117,8 @@ impl Row {
             width: period / columns as f64,
             height,
             columns,
-            points: vec![Point::default(); points],
-            memory: vec![Memory::default(); points * material.relaxations.len()],
+            gauss: Linearised::new(columns, material.relaxations.len()),
+            centre: Linearised::new(columns, material.relaxations.len()),
             conversions: vec![Conversion::default(); if converted { points } else { 0 }],
         }
     }
@@ -117,12 +135,12 @@ impl Row {
         let mut forces = [vec![0.0; 2 * self.columns], vec![0.0; 2 * self.columns]];
         let mut validity = Validity::BEST;
         for kind in 0..POINTS {
-            let line = self.line(material.rubber.rheology, differences, kind)?;
-            let conjugates = self.stresses(material, &line, kind)?;
-            let first = kind * self.columns;
-            for (column, conjugate) in conjugates.iter().enumerate() {
-                let point = &mut self.points[first + column];
-                point.stress = match self.conversions.get_mut(first + column) {
+            let rule = Rule::new(&self.element, kind);
+            let (line, mut points) =
+                self.line(material.rubber.rheology, differences, (kind, &rule))?;
+            let conjugates = self.stresses(material, &line, &mut points, kind)?;
+            for (column, (point, conjugate)) in points.iter_mut().zip(&conjugates).enumerate() {
+                point.stress = match self.conversions.get_mut(kind * self.columns + column) {
                     Some(conversion) => {
                         conversion.conjugate = *conjugate;
                         conversion.measure.derivative(conjugate)
@@ -132,24 +150,63 @@ impl Row {
                 let here = Validity { volume: point.volume(), label: point.label[0] };
                 validity = validity.and(here);
                 let stress = Point::first_stress(&point.deformation, &point.stress);
-                scatter(&self.element, kind, column, &nodal(&stress, &point.label), &mut forces);
+                scatter(&rule, column, &nodal(&stress, &point.label), &mut forces);
+                self.keep_point(kind, column, point);
             }
         }
         Ok((forces, validity))
     }
 
-    /// Takes over the deformation of a kind of points.
+    /// Keeps what the tangent needs of a point.
+    fn keep_point(&mut self, kind: usize, column: usize, point: &Point) {
+        if kind == CENTRE {
+            self.centre.points[column].set_lane(0, point);
+        } else {
+            self.gauss.points[column].set_lane(kind, point);
+        }
+    }
+
+    fn keep_memory(&mut self, kind: usize, [branch, column]: [usize; 2], memory: &Memory) {
+        let at = branch * self.columns + column;
+        if kind == CENTRE {
+            self.centre.memory[at].set_lane(0, memory);
+        } else {
+            self.gauss.memory[at].set_lane(kind, memory);
+        }
+    }
+
+    /// A point as the tangent knows it.
+    pub fn point(&self, kind: usize, column: usize) -> Point {
+        if kind == CENTRE {
+            self.centre.points[column].lane(0)
+        } else {
+            self.gauss.points[column].lane(kind)
+        }
+    }
+
+    /// A branch at a point as the tangent knows it.
+    pub fn memory(&self, kind: usize, [branch, column]: [usize; 2]) -> Memory {
+        let at = branch * self.columns + column;
+        if kind == CENTRE {
+            self.centre.memory[at].lane(0)
+        } else {
+            self.gauss.memory[at].lane(kind)
+        }
+    }
+
+    /// The deformation of a kind of points.
     fn line(
         &mut self,
         rheology: Rheology,
         differences: &Differences,
-        kind: usize,
-    ) -> Result<Line, Inverted> {
+        (kind, rule): (usize, &Rule<f64>),
+    ) -> Result<(Line, Vec<Point>), Inverted> {
         let first = kind * self.columns;
         let mut measures = Vec::with_capacity(self.columns);
-        for column in 0..self.columns {
-            let gradient = self.displacement_gradient(differences, kind, column);
-            let strain = self.points[first + column].deform(&gradient)?;
+        let mut points = vec![Point::default(); self.columns];
+        for (column, point) in points.iter_mut().enumerate() {
+            let gradient = self.displacement_gradient(differences, rule, column);
+            let strain = point.deform(&gradient)?;
             match self.conversions.get_mut(first + column) {
                 Some(conversion) => {
                     conversion.measure = rheology.measure(&strain).ok_or(Inverted)?;
@@ -158,47 +215,54 @@ impl Row {
                 None => measures.push(strain),
             }
         }
-        let spacings = self.spacings(differences, kind);
+        let spacings = self.spacings(differences, rule);
         if spacings.iter().all(|spacing| *spacing > 0.0) {
-            Ok(Line { measures, spacings })
+            Ok((Line { measures, spacings }, points))
         } else {
             Err(Inverted)
         }
     }
 
     /// Distances in m of the labels ξ of a kind of points from those before.
-    fn spacings(&self, differences: &Differences, kind: usize) -> Vec<f64> {
-        self.shifts(differences, kind).map(|shift| self.width - shift).collect()
+    fn spacings(&self, differences: &Differences, rule: &Rule<f64>) -> Vec<f64> {
+        self.shifts(differences, rule).iter().map(|shift| self.width - shift).collect()
     }
 
-    /// Differences in m of the x displacements of a kind of points to those of the points before.
-    pub fn shifts(
-        &self,
-        differences: &Differences,
-        kind: usize,
-    ) -> impl Iterator<Item = f64> + use<'_> {
-        let (a, b) = PLACES[kind];
+    /// Differences in m of the x displacements of points to those of the points before.
+    pub fn shifts<T: Lanes>(&self, differences: &Differences, rule: &Rule<T>) -> Vec<T> {
         let Differences { lower, upper, .. } = differences;
-        let along = |column: usize| (1.0 - b) * lower[column][0] + b * upper[column][0];
-        let along: Vec<f64> = (0..self.columns).map(along).collect();
+        let along = |column: usize| {
+            let (lower, upper) = (T::splat(lower[column][0]), T::splat(upper[column][0]));
+            rule.up[0] * lower + rule.up[1] * upper
+        };
+        let mut before = along(self.columns - 1);
         (0..self.columns)
-            .map(move |column| (1.0 - a) * along[before(column, self.columns)] + a * along[column])
+            .map(|column| {
+                let here = along(column);
+                let shift = rule.along[0] * before + rule.along[1] * here;
+                before = here;
+                shift
+            })
+            .collect()
     }
 
     /// `(q_s, q_Z, w_s, w_Z)` at a point of a column.
     #[inline]
-    pub fn displacement_gradient(
+    pub fn displacement_gradient<T: Lanes>(
         &self,
         differences: &Differences,
-        kind: usize,
+        rule: &Rule<T>,
         column: usize,
-    ) -> Tensor {
-        let (a, b) = PLACES[kind];
+    ) -> [T; 4] {
         let right = if column + 1 == self.columns { 0 } else { column + 1 };
         let Differences { lower, upper, across } = differences;
-        let along = |i: usize| ((1.0 - b) * lower[column][i] + b * upper[column][i]) / self.width;
-        let up = |i: usize| ((1.0 - a) * across[column][i] + a * across[right][i]) / self.height;
-        [along(0), up(0), along(1), up(1)]
+        let between = |weights: &[T; 2], from: &[f64; 2], to: &[f64; 2]| {
+            [0, 1].map(|i| weights[0] * T::splat(from[i]) + weights[1] * T::splat(to[i]))
+        };
+        let (width, height) = (T::splat(self.width), T::splat(self.height));
+        let along = between(&rule.up, &lower[column], &upper[column]).map(|d| d / width);
+        let up = between(&rule.along, &across[column], &across[right]).map(|d| d / height);
+        [along[0], up[0], along[1], up[1]]
     }
 
     /// Conjugate stresses at a kind of points, and their linearised law.
@@ -206,30 +270,27 @@ impl Row {
         &mut self,
         material: &Material,
         line: &Line,
+        points: &mut [Point],
         kind: usize,
     ) -> Result<Vec<Symmetric>, Inverted> {
         let law = Law { rubber: &material.rubber, volumetric: kind == CENTRE };
-        let points = &mut self.points[kind * self.columns..(kind + 1) * self.columns];
         let measures = points.iter_mut().zip(&line.measures);
         let stresses: Result<Vec<_>, _> =
             measures.map(|(point, measure)| law.equilibrium(point, measure)).collect();
         let mut stresses = stresses?;
-        let branches = material.rubber.branches.len();
         for (k, (spring, relaxation)) in
             material.rubber.branches.iter().zip(&material.relaxations).enumerate()
         {
-            let start = (kind * branches + k) * self.columns;
-            let memory = &mut self.memory[start..start + self.columns];
             let mut valid = Ok(());
             relax(relaxation, line, |column, passage| {
-                let memory = &mut memory[column];
-                passage.keep(memory, relaxation.length);
+                let mut memory = passage.memory(relaxation.length);
                 let both = [&line.measures[column], &passage.after];
-                let added =
-                    law.branch(spring, &mut points[column], memory, both, &mut stresses[column]);
+                let (point, stress) = (&mut points[column], &mut stresses[column]);
+                let added = law.branch(spring, point, &mut memory, both, stress);
                 if added.is_err() {
                     valid = added;
                 }
+                self.keep_memory(kind, [k, column], &memory);
             });
             valid?;
         }
@@ -241,17 +302,19 @@ impl Row {
     pub fn dissipation(&self, material: &Material, differences: &Differences) -> f64 {
         let mut power = 0.0;
         for kind in 0..POINTS {
-            let points = &self.points[kind * self.columns..(kind + 1) * self.columns];
-            let measures: Vec<Symmetric> = (0..self.columns)
-                .map(|column| match self.conversions.get(kind * self.columns + column) {
-                    Some(conversion) => conversion.measure.value(),
-                    None => {
-                        let gradient = self.displacement_gradient(differences, kind, column);
-                        points[column].clone().deform(&gradient).unwrap_or([f64::NAN; 3])
-                    }
+            let rule = Rule::new(&self.element, kind);
+            let mut points = vec![Point::default(); self.columns];
+            let measures: Vec<Symmetric> = points
+                .iter_mut()
+                .enumerate()
+                .map(|(column, point)| {
+                    let gradient = self.displacement_gradient(differences, &rule, column);
+                    let strain = point.deform(&gradient).unwrap_or([f64::NAN; 3]);
+                    let conversion = self.conversions.get(kind * self.columns + column);
+                    conversion.map_or(strain, |conversion| conversion.measure.value())
                 })
                 .collect();
-            let line = Line { measures, spacings: self.spacings(differences, kind) };
+            let line = Line { measures, spacings: self.spacings(differences, &rule) };
             for (spring, relaxation) in material.rubber.branches.iter().zip(&material.relaxations) {
                 relax(relaxation, &line, |column, passage| {
                     let measure = &line.measures[column];
@@ -276,13 +339,15 @@ struct Passage<'a> {
 }
 
 impl Passage<'_> {
-    /// Keeps what the tangent needs.
-    fn keep(&self, memory: &mut Memory, length: f64) {
+    /// What the tangent needs of the flow rule.
+    fn memory(&self, length: f64) -> Memory {
         let (weights, slopes) = self.weights;
-        memory.forgotten = (1.0 - weights.decay) as f32;
-        memory.weights = narrow(&weights.of);
-        let source = step(slopes, &self.before, &self.measures).map(|source| source / length);
-        memory.source = narrow(&source);
+        Memory {
+            forgotten: 1.0 - weights.decay,
+            weights: weights.of,
+            source: step(slopes, &self.before, &self.measures).map(|source| source / length),
+            ..Memory::default()
+        }
     }
 }
 
@@ -324,25 +389,24 @@ pub(super) fn before(column: usize, columns: usize) -> usize {
 
 /// Factors of `N_s` and `N_Z` in the nodal force `P (N_s, A N_Z - B N_s)`.
 #[inline]
-pub(super) fn nodal(stress: &Tensor, [a, b]: &[f64; 2]) -> Tensor {
-    [stress[0] - b * stress[1], a * stress[1], stress[2] - b * stress[3], a * stress[3]]
+pub(super) fn nodal<T: Scalar>(stress: &[T; 4], [a, b]: &[T; 2]) -> [T; 4] {
+    let [xx, xz, zx, zz] = *stress;
+    [xx - *b * xz, *a * xz, zx - *b * zz, *a * zz]
 }
 
-/// Adds the nodal forces of a point.
+/// Adds the nodal forces of points.
 #[inline]
-pub(super) fn scatter(
-    element: &Element,
-    kind: usize,
+pub(super) fn scatter<T: Lanes>(
+    rule: &Rule<T>,
     column: usize,
-    stress: &Tensor,
+    stress: &[T; 4],
     forces: &mut [Vec<f64>; 2],
 ) {
-    let weight = element.weights[kind];
     let right = if 2 * column + 2 == forces[0].len() { 0 } else { column + 1 };
-    for (node, [along, up]) in element.gradients[kind].iter().enumerate() {
+    for (node, [along, up]) in rule.gradients.iter().enumerate() {
         let at = 2 * if node % 2 == 0 { column } else { right };
         let force = &mut forces[node / 2][at..at + 2];
-        force[0] += weight * (stress[0] * along + stress[1] * up);
-        force[1] += weight * (stress[2] * along + stress[3] * up);
+        force[0] += (rule.weight * (stress[0] * *along + stress[1] * *up)).sum();
+        force[1] += (rule.weight * (stress[2] * *along + stress[3] * *up)).sum();
     }
 }

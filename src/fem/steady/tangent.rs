@@ -1,114 +1,152 @@
 //! Change of the forces of a row by that of its displacements.
+//!
+//! In single precision, the Gauss points of an element side by side: it makes directions.
 
-use super::super::kinematics::Tensor;
-use super::super::mesh::{CENTRE, POINTS};
-use super::flow::{Relaxation, window};
-use super::point::{Memory, Point, wide};
-use super::row::{Differences, Material, Row, nodal, scatter};
-use crate::rubber::finite_strain::Symmetric;
+use super::super::mesh::CENTRE;
+use super::flow::Relaxation;
+use super::lanes::{Lanes, Rule, lane, set_lane};
+use super::point::{Memory, Point};
+use super::row::{Differences, Linearised, Material, Row, nodal, scatter};
+use crate::rubber::finite_strain::{Scalar, Symmetric};
 
-/// Changes at a kind of points.
-struct Changes {
-    gradients: Vec<Tensor>,
-    deformations: Vec<Tensor>,
-    strains: Vec<Symmetric>,
-    measures: Vec<Symmetric>,
-    /// Of the distances of the labels.
-    spacings: Vec<f64>,
-    stresses: Vec<Symmetric>,
+/// Changes at points of a row, by columns.
+struct Changes<T> {
+    gradients: Vec<[T; 4]>,
+    /// Those of the last two columns first, that of the first column again behind the last one: what
+    /// the flow rule sees of a periodic row.
+    measures: Vec<[T; 3]>,
+    /// By which the distances of the labels get shorter.
+    shifts: Vec<T>,
+    stresses: Vec<[T; 3]>,
 }
 
 impl Row {
     /// Change of the forces at the corners for a change of the displacements.
     pub fn tangent(&self, material: &Material, differences: &Differences) -> [Vec<f64>; 2] {
         let mut forces = [vec![0.0; 2 * self.columns], vec![0.0; 2 * self.columns]];
-        let branches = material.relaxations.len();
-        for kind in 0..POINTS {
-            let points = &self.points[kind * self.columns..(kind + 1) * self.columns];
-            let mut changes = self.changes(differences, kind);
-            for (k, relaxation) in material.relaxations.iter().enumerate() {
-                let start = (kind * branches + k) * self.columns;
-                let memory = &self.memory[start..start + self.columns];
-                relax(relaxation, memory, points, kind == CENTRE, &mut changes);
-            }
-            for (column, point) in points.iter().enumerate() {
-                let conjugate = &changes.stresses[column];
-                let stress = match self.conversions.get(kind * self.columns + column) {
-                    Some(conversion) => {
-                        conversion.stress_change(conjugate, &changes.strains[column])
-                    }
-                    None => *conjugate,
-                };
-                let (df, gradient) = (&changes.deformations[column], &changes.gradients[column]);
-                let total = stress_change(point, df, &stress, gradient);
-                scatter(&self.element, kind, column, &total, &mut forces);
-            }
-        }
+        self.add_tangent(material, differences, (0, &self.gauss), &mut forces);
+        self.add_tangent(material, differences, (CENTRE, &self.centre), &mut forces);
         forces
     }
 
+    /// Adds the part of the points from kind `first` on.
+    fn add_tangent<T: Lanes>(
+        &self,
+        material: &Material,
+        differences: &Differences,
+        (first, law): (usize, &Linearised<T>),
+        forces: &mut [Vec<f64>; 2],
+    ) {
+        let rule = Rule::new(&self.element, first);
+        let mut changes = self.changes(differences, &rule, (first, law));
+        let branches = law.memory.chunks_exact(self.columns);
+        for (relaxation, memory) in material.relaxations.iter().zip(branches) {
+            changes.relax(relaxation, memory, &law.points, first == CENTRE);
+        }
+        let made = changes.gradients.iter().zip(&changes.stresses);
+        for (column, (point, (gradient, conjugate))) in law.points.iter().zip(made).enumerate() {
+            let df = point.deformation_change(gradient);
+            let stress = self.stress(point, &df, conjugate, [first, column]);
+            let total = stress_change(point, &df, &stress, gradient);
+            scatter(&rule, column, &total, forces);
+        }
+    }
+
     /// Changes of deformation and measure, and of the stresses if no branch followed.
-    fn changes(&self, differences: &Differences, kind: usize) -> Changes {
+    fn changes<T: Lanes>(
+        &self,
+        differences: &Differences,
+        rule: &Rule<T>,
+        (first, law): (usize, &Linearised<T>),
+    ) -> Changes<T> {
         let count = self.columns;
         let mut changes = Changes {
             gradients: Vec::with_capacity(count),
-            deformations: Vec::with_capacity(count),
-            strains: Vec::with_capacity(count),
-            measures: Vec::with_capacity(count),
-            spacings: self.shifts(differences, kind).map(|shift| -shift).collect(),
+            measures: vec![[T::default(); 3]; 2],
+            shifts: self.shifts(differences, rule),
             stresses: Vec::with_capacity(count),
         };
-        for column in 0..count {
-            let point = &self.points[kind * count + column];
-            let gradient = self.displacement_gradient(differences, kind, column);
-            let df = point.deformation_change(&gradient);
-            let strain = point.strain_change(&df);
-            let measure = match self.conversions.get(kind * count + column) {
-                Some(conversion) => conversion.measure.derivative(&strain),
-                None => strain,
-            };
-            changes.stresses.push(point.own_stress(kind == CENTRE, &measure));
+        changes.measures.reserve_exact(count + 1);
+        for (column, point) in law.points.iter().enumerate() {
+            let gradient = self.displacement_gradient(differences, rule, column);
+            let strain = point.strain_change(&point.deformation_change(&gradient));
+            let measure = self.measure(&strain, [first, column]);
+            changes.stresses.push(point.own_stress(first == CENTRE, &measure));
             changes.gradients.push(gradient);
-            changes.deformations.push(df);
-            changes.strains.push(strain);
             changes.measures.push(measure);
         }
+        changes.measures.copy_within(count.., 0);
+        changes.measures.push(changes.measures[2]);
         changes
+    }
+
+    /// Change of the measure by that of C, at the points of a column from kind `first` on.
+    #[inline]
+    fn measure<T: Lanes>(&self, strain: &[T; 3], [first, column]: [usize; 2]) -> [T; 3] {
+        if self.conversions.is_empty() {
+            return *strain;
+        }
+        by_lane(|at| {
+            let conversion = &self.conversions[(first + at) * self.columns + column];
+            conversion.measure.derivative(&lane(strain, at))
+        })
+    }
+
+    /// Change of S by that of the conjugate stress.
+    #[inline]
+    fn stress<T: Lanes>(
+        &self,
+        point: &Point<T>,
+        df: &[T; 4],
+        conjugate: &[T; 3],
+        [first, column]: [usize; 2],
+    ) -> [T; 3] {
+        if self.conversions.is_empty() {
+            return *conjugate;
+        }
+        let strain = point.strain_change(df);
+        by_lane(|at| {
+            let conversion = &self.conversions[(first + at) * self.columns + column];
+            conversion.stress_change(&lane(conjugate, at), &lane(&strain, at))
+        })
     }
 }
 
-/// Adds what a branch changes of the stresses.
-fn relax(
-    relaxation: &Relaxation,
-    memory: &[Memory],
-    points: &[Point],
-    volumetric: bool,
-    changes: &mut Changes,
-) {
-    let count = memory.len();
-    let step = |state: &Symmetric, column: usize| -> Symmetric {
-        let memory = &memory[column];
-        let weights = wide(&memory.weights);
-        let measures = window(&changes.measures, column);
-        let (forgotten, spacing) = (f64::from(memory.forgotten), changes.spacings[column]);
-        [0, 1, 2].map(|i| {
-            let of: f64 = (0..4).map(|k| weights[k] * measures[k][i]).sum();
-            state[i] - forgotten * state[i] + of + f64::from(memory.source[i]) * spacing
-        })
-    };
-    let mut state = [0.0; 3];
-    let start = start(memory);
-    for column in start..count {
-        state = step(&state, column);
-    }
-    if start == 0 {
-        let whole = relaxation.whole_period();
-        state = state.map(|y| y / whole);
-    }
-    for column in 0..count {
-        state = step(&state, column);
-        let part = memory[column].stress(volumetric, &points[column], &state);
-        (0..3).for_each(|i| changes.stresses[column][i] += part[i]);
+fn by_lane<T: Lanes>(value: impl Fn(usize) -> Symmetric) -> [T; 3] {
+    let mut lanes = [T::default(); 3];
+    (0..T::COUNT).for_each(|at| set_lane(&mut lanes, at, &value(at)));
+    lanes
+}
+
+impl<T: Lanes> Changes<T> {
+    /// Takes from the stresses what a branch relieves them of.
+    fn relax(
+        &mut self,
+        relaxation: &Relaxation,
+        memory: &[Memory<T>],
+        points: &[Point<T>],
+        volumetric: bool,
+    ) {
+        let windows = self.measures.array_windows().zip(&self.shifts);
+        let inputs: Vec<[T; 3]> = memory
+            .iter()
+            .zip(windows)
+            .map(|(memory, (measures, shift))| memory.input(measures, *shift))
+            .collect();
+        let start = start(memory);
+        let steps = memory[start..].iter().zip(&inputs[start..]);
+        let mut state =
+            steps.fold([T::default(); 3], |state, (memory, input)| memory.step(&state, input));
+        if start == 0 {
+            let periods = T::splat(1.0 / relaxation.whole_period());
+            state = state.map(|y| y * periods);
+        }
+        let columns = memory.iter().zip(&inputs).zip(points.iter().zip(&mut self.stresses));
+        for ((memory, input), (point, stress)) in columns {
+            state = memory.step(&state, input);
+            let relief = memory.relief(volumetric, point, &state);
+            (0..3).for_each(|i| stress[i] = stress[i] - relief[i]);
+        }
     }
 }
 
@@ -116,11 +154,11 @@ fn relax(
 const FORGOTTEN: f64 = 1e-9;
 
 /// First point of a sweep that ends at the last one with what the row has put into it.
-fn start(memory: &[Memory]) -> usize {
-    let mut left = 1.0;
+fn start<T: Lanes>(memory: &[Memory<T>]) -> usize {
+    let mut left = T::splat(1.0);
     let start = memory.iter().rposition(|memory| {
-        left *= 1.0 - f64::from(memory.forgotten);
-        left < FORGOTTEN
+        left = left - memory.forgotten * left;
+        (0..T::COUNT).all(|at| left.lane(at) < FORGOTTEN)
     });
     start.unwrap_or(0)
 }
@@ -128,21 +166,17 @@ fn start(memory: &[Memory]) -> usize {
 /// Change of what [`nodal`] returns, by those of the deformation gradient, of the stress and of the
 /// gradient of the displacements.
 #[inline]
-pub(super) fn stress_change(
-    point: &Point,
-    df: &Tensor,
-    stress: &Symmetric,
-    gradient: &Tensor,
-) -> Tensor {
+pub(super) fn stress_change<T: Scalar>(
+    point: &Point<T>,
+    df: &[T; 4],
+    stress: &[T; 3],
+    gradient: &[T; 4],
+) -> [T; 4] {
     let geometric = Point::first_stress(df, &point.stress);
     let elastic = Point::first_stress(&point.deformation, stress);
     let change = [0, 1, 2, 3].map(|i| geometric[i] + elastic[i]);
-    let total = Point::first_stress(&point.deformation, &point.stress);
+    let [_, xz, _, zz] = Point::first_stress(&point.deformation, &point.stress);
     let [q_s, q_z, ..] = *gradient;
-    let mut nodal = nodal(&change, &point.label);
-    nodal[0] += q_z * total[1];
-    nodal[1] -= q_s * total[1];
-    nodal[2] += q_z * total[3];
-    nodal[3] -= q_s * total[3];
-    nodal
+    let nodal = nodal(&change, &point.label);
+    [nodal[0] + q_z * xz, nodal[1] - q_s * xz, nodal[2] + q_z * zz, nodal[3] - q_s * zz]
 }
