@@ -110,3 +110,67 @@ fn raise(
         close(finer, guess, tolerance)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::setting;
+    use super::super::{BlockOptions, SteadyContact, growth};
+    use super::*;
+    use crate::rubber::{Rheology, Rubber};
+    use crate::surface::Wave;
+    use approx::assert_relative_eq;
+
+    const PERIOD: f64 = 1e-3;
+    const SPEED: f64 = 0.05;
+
+    /// Four octaves with an rms slope of 0.5 each.
+    fn profile() -> RigidProfile {
+        let wave = |octave: i32| {
+            let wavelength = PERIOD / 2_f64.powi(octave);
+            Wave {
+                wavelength,
+                amplitude: 0.11 * wavelength,
+                phase: 1.3 * f64::from(octave * octave),
+            }
+        };
+        RigidProfile::from_waves(&(0..4).map(wave).collect::<Vec<_>>(), PERIOD)
+    }
+
+    #[test]
+    fn a_solution_from_half_the_columns_is_that_of_the_grid_itself() {
+        let (rubber, law) = (Rubber::table_2_1(), Rheology::NeoHookean);
+        let contact = |columns: usize| {
+            SteadyContact::new(&rubber, law, SPEED, profile(), BlockOptions::new(columns)).unwrap()
+        };
+        let (mut climbed, mut half) = (contact(512), contact(256));
+        // The second pressure is reached from the first, the third is too far for that.
+        for pressure in [2e5, 2.5e5, 5e5] {
+            let solution = climbed.solve(pressure).unwrap();
+            assert_eq!(solution.mean_pressure, pressure);
+            assert!(solution.residual < EXACT);
+            let coarser = solution.coarser.unwrap();
+            let expected = half.solve(pressure).unwrap();
+            assert_eq!(expected.coarser, None);
+            assert_relative_eq!(
+                coarser.friction_coefficient,
+                expected.friction_coefficient,
+                max_relative = 1e-4
+            );
+            let setting = setting(&rubber, law, SPEED);
+            let mut path =
+                growth::grow(&setting, &profile(), BlockOptions::new(512), pressure).unwrap();
+            let (state, residual) = path.finish(EXACT).unwrap();
+            let grown = SteadySolution::read(&path.level, &state, SPEED, residual);
+            assert_relative_eq!(
+                solution.friction_coefficient,
+                grown.friction_coefficient,
+                max_relative = 1e-7
+            );
+            assert_relative_eq!(
+                solution.contact_area_fraction,
+                grown.contact_area_fraction,
+                max_relative = 1e-6
+            );
+        }
+    }
+}

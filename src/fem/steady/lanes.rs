@@ -5,7 +5,7 @@
 
 use super::super::mesh::{Element, PLACES};
 use crate::rubber::finite_strain::Scalar;
-use wide::f32x4;
+use wide::f64x4;
 
 /// One number, or several side by side.
 pub(super) trait Lanes: Scalar + Default {
@@ -51,52 +51,28 @@ impl Lanes for f64 {
     }
 }
 
-impl Lanes for f32 {
-    const COUNT: usize = 1;
-
-    #[inline]
-    fn splat(value: f64) -> Self {
-        value as f32
-    }
-
-    #[inline]
-    fn lane(&self, _: usize) -> f64 {
-        f64::from(*self)
-    }
-
-    #[inline]
-    fn set_lane(&mut self, _: usize, value: f64) {
-        *self = value as f32;
-    }
-
-    #[inline]
-    fn sum(self) -> f64 {
-        f64::from(self)
-    }
-}
-
-impl Lanes for f32x4 {
+impl Lanes for f64x4 {
     const COUNT: usize = 4;
 
     #[inline]
     fn splat(value: f64) -> Self {
-        Self::from(value as f32)
+        Self::from(value)
     }
 
     #[inline]
     fn lane(&self, at: usize) -> f64 {
-        f64::from(self.as_array_ref()[at])
+        self.as_array_ref()[at]
     }
 
     #[inline]
     fn set_lane(&mut self, at: usize, value: f64) {
-        self.as_array_mut()[at] = value as f32;
+        self.as_array_mut()[at] = value;
     }
 
     #[inline]
     fn sum(self) -> f64 {
         let [a, b, c, d] = self.to_array();
-        f64::from((a + b) + (c + d))
+        (a + b) + (c + d)
     }
 }
 

@@ -65,6 +65,9 @@ pub(super) struct Level {
     /// Whether the factors belong to a state near enough.
     pub factored: bool,
     pub interrupt: crate::numerics::Interrupt,
+    /// Whether the way to a solution is taken with less care, for the sake of speed: on profiles of many
+    /// scales, whose grids are large and whose pressures are far from the end of a path.
+    pub in_haste: bool,
 }
 
 /// What a state leaves unbalanced.
@@ -91,6 +94,7 @@ impl Level {
             factors,
             factored: false,
             interrupt: setting.interrupt.clone(),
+            in_haste: super::has_many_scales(profile),
             block: Block::new(grid, setting.material(profile.period())),
         }
     }

@@ -338,7 +338,11 @@ impl SteadyContact {
             if entered.is_err() {
                 match Path::start(level(), first) {
                     Ok(path) => self.path = Some(path),
-                    Err(NotConverged) => continue,
+                    Err(NotConverged) => {
+                        // What a coarser grid has reached is no solution on this one.
+                        arrived = Err(NotConverged);
+                        continue;
+                    }
                 }
             }
             arrived =

@@ -6,12 +6,14 @@ use super::long::Long;
 use super::state::State;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, flexible_gmres};
 
-/// Relative accuracy of the linear solves: the first one as long as the residual is above [`NEAR`] and the
-/// linearised law is further from the law than that.
-const LINEAR_TOLERANCE: [f64; 2] = [0.1, 1e-2];
-const NEAR: f64 = 0.05;
-/// Krylov iterations beyond which factors of an earlier state are renewed.
-const MOST_WITH_OLD_FACTORS: usize = 12;
+/// Relative accuracy of the linear solves, and the one on a level in haste as long as the residual is above
+/// the last number: the linearised law is further from the law than that.
+const LINEAR_TOLERANCE: f64 = 1e-2;
+const LINEAR_TOLERANCE_IN_HASTE: (f64, f64) = (0.1, 0.05);
+/// What a level in haste multiplies the residuals of points behind a barrier by.
+const HASTE: f64 = 10.0;
+/// Krylov iterations beyond which factors of an earlier state are renewed, without haste and with.
+const MOST_WITH_OLD_FACTORS: [usize; 2] = [18, 12];
 /// Krylov iterations of one linear solve.
 const MOST_ITERATIONS: usize = 120;
 /// Largest change of a contact unknown in a step, in periods.
@@ -25,8 +27,6 @@ const GROWTH: [f64; 2] = [10.0, 2.0];
 const SLIGHT: f64 = 0.1;
 /// A solve is given up where the residual is above the first number from as many steps on as the second.
 const HOPELESS: [(f64, usize); 2] = [(5.0, 5), (1.0, 8)];
-/// The same where the residual is that many times the one at the start, from as many steps on.
-const GROWN: (f64, usize) = (4.0, 3);
 /// Parts of det F and of A that a step must leave.
 const LEFT_OF_VOLUME: f64 = 0.2;
 const LEFT_OF_LABEL: f64 = 0.1;
@@ -53,20 +53,20 @@ impl Level {
         let mut now = State { pressure: target.pressure, ..state.clone() };
         self.factored = false;
         let mut balance = self.balance(&mut now, target.barrier)?;
-        let first = balance.norm;
+        let hasty = self.in_haste && target.barrier > 0.0;
+        let tolerance = target.tolerance * if hasty { HASTE } else { 1.0 };
         let mut touching: Vec<bool> = Vec::new();
         for step in 0..=target.most_steps {
             let settled = target.barrier > 0.0 || {
                 let before = std::mem::replace(&mut touching, now.touching());
                 before == touching
             };
-            if balance.norm < target.tolerance && settled {
+            if balance.norm < tolerance && settled {
                 *state = now;
                 return Ok((step, balance.norm));
             }
             let hopeless =
-                HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm)
-                    || step >= GROWN.1 && balance.norm > GROWN.0 * first.max(1.0);
+                HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
             if step == target.most_steps || hopeless || self.interrupt.is_set() {
                 break;
             }
@@ -82,10 +82,14 @@ impl Level {
     /// Newton's direction. Old factors are tried first unless the contact has changed.
     fn direction(&mut self, balance: &Balance, settled: bool) -> Result<Vec<f64>, NotConverged> {
         let right: Vec<f64> = balance.residual.iter().map(|r| -r).collect();
-        let relative = LINEAR_TOLERANCE[usize::from(balance.norm < NEAR)];
+        let relative = match LINEAR_TOLERANCE_IN_HASTE {
+            (tolerance, above) if self.in_haste && balance.norm > above => tolerance,
+            _ => LINEAR_TOLERANCE,
+        };
         let tolerance = relative * euclidean_norm(&right);
         if self.factored && settled {
-            let (change, left) = self.krylov(balance, &right, tolerance, MOST_WITH_OLD_FACTORS);
+            let most = MOST_WITH_OLD_FACTORS[usize::from(self.in_haste)];
+            let (change, left) = self.krylov(balance, &right, tolerance, most);
             if left <= tolerance {
                 return Ok(change);
             }

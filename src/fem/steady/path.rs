@@ -12,7 +12,7 @@ const BARRIER: f64 = 3e-2;
 /// Barrier with which a block is put above the profile.
 const FIRST_BARRIER: f64 = 0.3;
 /// Residual of a point behind the barrier, and of a solution.
-const LOOSE: f64 = 1e-1;
+const LOOSE: f64 = 1e-2;
 pub(super) const EXACT: f64 = 1e-9;
 /// Residual of an exact contact that a finer grid starts from.
 pub(super) const EXACT_ENOUGH: f64 = 1e-5;

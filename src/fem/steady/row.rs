@@ -11,7 +11,7 @@ use super::lanes::{Lanes, Rule};
 use super::long::Value;
 use super::point::{Conversion, Law, Memory, Point};
 use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric};
-use wide::f32x4;
+use wide::f64x4;
 
 /// What all rows share: the rubber and its memory at one speed.
 #[derive(Debug, Clone)]
@@ -65,8 +65,8 @@ pub(super) struct Row {
     pub height: f64,
     pub columns: usize,
     /// At the Gauss points.
-    pub gauss: Linearised<f32x4>,
-    pub centre: Linearised<f32>,
+    pub gauss: Linearised<f64x4>,
+    pub centre: Linearised<f64>,
     /// One kind of points after another, columns first; under the linear law alone.
     pub conversions: Vec<Conversion>,
 }

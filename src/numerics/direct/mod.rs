@@ -34,7 +34,7 @@ mod tests;
 pub use pattern::{Block, BlockPattern};
 
 use crate::numerics::Interrupt;
-use numeric::{Elimination, Pivot};
+use numeric::Elimination;
 use scaling::Scaling;
 use solve::Factors;
 use symbolic::Symbolic;
@@ -46,7 +46,7 @@ type Real = f32;
 /// eliminated, is round-off.
 const TINY: Real = Real::EPSILON;
 
-/// With a relative pivot below this the factors are tried on a vector before they are used. The smallest
+/// With a relative pivot below this it takes a trial on a vector to tell whether the factors are an inverse. The smallest
 /// pivot alone does not tell singular matrices (2e-6 to 4e-6 measured on 256 nodes) from merely large
 /// grids of nearly incompressible elements (5e-6 on 2048 x 60 nodes, where refinement still gains
 /// 1.5 digits a step).
@@ -80,6 +80,8 @@ pub struct SparseLu {
     factors: Vec<Real>,
     exchanges: Vec<u32>,
     factored: bool,
+    /// Smallest relative pivot of the factors.
+    smallest: Real,
 }
 
 impl SparseLu {
@@ -101,6 +103,7 @@ impl SparseLu {
             factors: Vec::new(),
             exchanges: Vec::new(),
             factored: false,
+            smallest: Real::INFINITY,
         }
     }
 
@@ -117,9 +120,9 @@ impl SparseLu {
     /// Factors the matrix with these blocks, in the order of the pattern.
     ///
     /// # Errors
-    /// [`FactorError::Singular`] if a pivot is zero or not a number, or if small pivots leave factors
-    /// that reproduce less than half of a vector that they were tried on; and
-    /// [`FactorError::Interrupted`]. There are no factors then.
+    /// [`FactorError::Singular`] if a pivot is zero, round-off or not a number, and
+    /// [`FactorError::Interrupted`]. There are no factors then. Small pivots alone are no error: such
+    /// factors may be worthless as an inverse ([`Self::reproduces`] tells) and still lead an iteration.
     ///
     /// # Panics
     /// If there are not as many blocks as in the pattern.
@@ -135,22 +138,22 @@ impl SparseLu {
             self.factored = true;
             return Ok(());
         };
-        let Pivot { relative, place } =
-            elimination.subtree(root, &mut self.factors, &mut self.exchanges)?.smallest;
+        self.smallest =
+            elimination.subtree(root, &mut self.factors, &mut self.exchanges)?.smallest.relative;
         self.factored = true;
-        if relative < DOUBTFUL && !self.reproduce(values) {
-            self.factored = false;
-            return Err(self.symbolic.singular(Pivot { relative, place }));
-        }
         Ok(())
     }
 
-    /// Whether `|x - (LU)^-1 A x| < |x| / 2` for the vector `x = (LU)^-1 b`, `b` of random signs.
+    /// Whether the factors serve as an inverse of the matrix with these blocks: no pivot is small, or
+    /// `|x - (LU)^-1 A x| < |x| / 2` for the vector `x = (LU)^-1 b`, `b` of random signs.
     ///
     /// In such an `x` the direction prevails that the factors shrink most. If `A` is singular this
     /// is what `A` takes to zero, and the error is `x` itself; whereas with `(LU)^-1 A` near the
     /// identity it is small.
-    fn reproduce(&self, values: &[Block]) -> bool {
+    pub fn reproduces(&self, values: &[Block]) -> bool {
+        if self.smallest >= DOUBTFUL {
+            return true;
+        }
         let mut state = 1u32;
         let mut sign = || {
             // Xorshift (Marsaglia 2003, doi:10.18637/jss.v008.i14).
