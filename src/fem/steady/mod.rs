@@ -270,7 +270,7 @@ impl SteadyContact {
             // Behind an interrupt every path ends.
             Err(_) if self.setting.interrupt.is_set() => Err(FemError::Interrupted),
             Err(ended) => {
-                let reached = self.last_converged(ended);
+                let reached = self.last_converged(ended, pressure);
                 if self.setting.interrupt.is_set() {
                     return Err(FemError::Interrupted);
                 }
@@ -382,8 +382,8 @@ impl SteadyContact {
     }
 
     /// The highest point at which the contact converges, of the path that ended or of what was known
-    /// before.
-    fn last_converged(&mut self, ended: Option<Box<Path>>) -> PathEnd {
+    /// before; a coarser grid may have reached the `wanted` one, which says nothing of this one.
+    fn last_converged(&mut self, ended: Option<Box<Path>>, wanted: f64) -> PathEnd {
         let known = self.path.take();
         let mut reached: Option<SteadySolution> = None;
         for path in ended.map(|path| *path).into_iter().chain(known) {
@@ -406,7 +406,8 @@ impl SteadyContact {
             true => PathEnd::NotGrown,
             false => PathEnd::NotStarted,
         };
-        reached.map_or(none, |solution| PathEnd::At {
+        let before = reached.filter(|solution| solution.mean_pressure < wanted);
+        before.map_or(none, |solution| PathEnd::At {
             pressure: solution.mean_pressure,
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
