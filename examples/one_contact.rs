@@ -3,7 +3,7 @@
 //!
 //!     cargo run --release --example one_contact
 
-use asperity::contact::refine::{OnGrid, on_grid};
+use asperity::contact::refine::{HALF_SPACE, OnGrid, on_grid};
 use asperity::contact::{ContactError, ContactSolution, SlidingContact};
 use asperity::rubber::Rubber;
 use asperity::surface::{Wave, wave};
@@ -33,7 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
         };
-        let refined = on_grid(POINTS, FEWEST_POINTS, solve, ContactError::is_no_solution, view)?;
+        let refined =
+            on_grid(POINTS, FEWEST_POINTS, HALF_SPACE, solve, ContactError::is_no_solution, view)?;
         let error = refined.error.ok_or("the grids do not resolve the contact")?;
         println!(
             "{:9} {:9.5} {:9.5} {:9.1e}",

@@ -163,6 +163,9 @@ impl Recipe {
         for published in &mut recipe.tables.published {
             published.file = folder.join(&published.file);
         }
+        for published in &mut recipe.tables.published_corrections {
+            published.file = folder.join(&published.file);
+        }
         Ok(recipe)
     }
 
@@ -237,6 +240,8 @@ impl Recipe {
         paths.extend(self.bem.iter_mut().map(|bem| &mut bem.rubber));
         paths.extend(self.sinusoid.iter_mut().map(|sinusoid| &mut sinusoid.rubber));
         paths.extend(self.tables.published.iter_mut().map(|published| &mut published.file));
+        let corrections = self.tables.published_corrections.iter_mut();
+        paths.extend(corrections.map(|published| &mut published.file));
         if let Some(sweep) = &mut self.sweep {
             paths.extend(&mut sweep.rubbers);
             paths.extend(sweep.specimens.iter_mut().flat_map(|specimen| &mut specimen.scans));
@@ -335,6 +340,22 @@ impl Chain<'_> {
             self.approximate.given.len(),
             "given without [ingest] and approximate.waves, or left out with both",
         )?;
+        if let Some(fem) = self.fem {
+            demand(
+                fem.waves.iter().all(|waves| self.realise.waves.contains(waves)),
+                "fem.waves",
+                &fem.waves,
+                "numbers of waves that also stand in realise.waves",
+            )?;
+        }
+        if let Some(published) = self.tables.published_corrections.first() {
+            demand(
+                self.micro.is_some(),
+                "tables.published_corrections",
+                &published.name,
+                "left out without a section [micro], whose samples stand beside them",
+            )?;
+        }
         let fitted = self.approximate.numbers();
         demand(
             self.realise.waves.iter().all(|waves| fitted.contains(waves)),

@@ -53,6 +53,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<multilevel::PairRow>()?,
         table::<tables::FrictionRow>()?,
         table::<tables::ComparisonRow>()?,
+        table::<tables::CorrectionRow>()?,
         table::<tables::ModelRow>()?,
         table::<tables::TheoryRow>()?,
         table::<SweepFrictionRow>()?,

@@ -62,7 +62,7 @@ pub(super) fn steady_friction(
     columns: u32,
     pressure: f64,
 ) -> Result<f64, Failure> {
-    let options = BlockOptions::new(columns as usize);
+    let options = BlockOptions::of_profile(columns as usize, &profile);
     let mut contact = SteadyContact::new(rubber, Rheology::NeoHookean, SPEED, profile, options)?;
     Ok(contact.solve(pressure)?.friction_coefficient)
 }

@@ -98,6 +98,18 @@ fn text(forecast: &Forecast) -> String {
             micro.seconds
         );
     }
+    for curve in &forecast.fem {
+        let _ = writeln!(
+            text,
+            "all waves of {} waves, {} mm/s: {} realisations, {} columns, about {} pressures and {:.0} s each",
+            curve.waves,
+            curve.speed_mm_s,
+            curve.realisations,
+            curve.columns,
+            curve.solves,
+            curve.seconds_each
+        );
+    }
     for pairs in &forecast.multilevel {
         let count = match (pairs.pairs, pairs.most_pairs) {
             (0, _) => "no finite elements, the surface is gentle enough for the half-space".into(),

@@ -1,27 +1,25 @@
 //! Friction to a wanted accuracy: grids are doubled until they agree.
 //!
-//! Friction and contact area of a resolved contact converge with the square of the grid spacing, but
-//! not smoothly: contact edges fall between points, differently on every grid. One difference
-//! between two grids may therefore be small by chance. The error of the last grid is estimated from
-//! the last three, each less by the factor `r` for every doubling since:
+//! Friction and contact area of a resolved contact converge with the spacing, but not smoothly: contact edges fall
+//! between points, differently on every grid. One difference between two grids may therefore be small by chance. The
+//! error of the last grid is estimated from the last three, each less by the factor `r` for every doubling since:
 //!
 //! ```text
 //! error(m) = max(|f(m) - f(m-1)|, |f(m-1) - f(m-2)| / r, |f(m-2) - f(m-3)| / r^2)
 //! ```
 //!
-//! with `r = 4` for friction and 8 for the area, whose edges are read between grid points. The first is
-//! three times the error of an exactly quadratic sequence, which is the margin for all others: on a
-//! hundred random surfaces the true error of friction is below the estimate in 98, and a fifth of
-//! it in the median; `tests/convergence` demands 95 and a tenth.
+//! with `r` of [`HALF_SPACE`] or of [`FINITE_ELEMENTS`]. For `r = 4` it is three times the error of an exactly quadratic
+//! sequence, which is the margin for all others: on a hundred random surfaces the true error of friction is below the
+//! estimate in 98, and a fifth of it in the median; `tests/convergence` demands 95 and a tenth, of finite elements too.
 
 use crate::error_kind::{ErrorKind, HasKind};
 
 /// Doublings that the estimate looks back on.
 const DIFFERENCES: usize = 3;
-/// Fall of the error of friction with each doubling.
-const FRICTION_ORDER: f64 = 4.0;
-/// Fall of the error of the contact area, whose edges are read between grid points.
-const AREA_ORDER: f64 = 8.0;
+/// The half-space, which reads the edges of contact between grid points.
+pub const HALF_SPACE: Orders = Orders { friction: 4.0, area: 8.0 };
+/// Finite elements, whose area is known to a share of an element.
+pub const FINITE_ELEMENTS: Orders = Orders { friction: 4.0, area: 2.0 };
 /// Weight of a relative error of the area where friction over area is wanted. Tables of road surfaces have
 /// `|d ln friction / d ln area|` of up to 0.25 in their means.
 pub const AREA_WEIGHT: f64 = 0.25;
@@ -41,6 +39,15 @@ pub const TOLERANCES_IN_WORDS: &str = "between 1e-8 and 0.5 (0.1 % is 0.001)";
 pub const SHARES: std::ops::RangeInclusive<f64> = 1e-9..=0.5;
 /// The same in a message.
 pub const SHARES_IN_WORDS: &str = "between 1e-9 and 0.5 (0.1 % is 0.001)";
+
+/// What errors fall by with each doubling of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orders {
+    /// That of the friction coefficient.
+    pub friction: f64,
+    /// That of the contact area.
+    pub area: f64,
+}
 
 /// A contact on one of several grids.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,6 +135,8 @@ pub struct Refinement {
     pub tolerance: f64,
     /// Of what.
     pub watched: Watched,
+    /// How it converges.
+    pub orders: Orders,
     /// Points of the coarsest grid.
     pub first: usize,
     /// Points that no grid exceeds.
@@ -154,7 +163,7 @@ impl Refinement {
                 None => grids.clear(),
                 Some(solution) => {
                     grids.push(view(&solution));
-                    let error = grid_error(&grids);
+                    let error = grid_error(&grids, self.orders);
                     reached = error.map(|error| self.relative(&error, grids[grids.len() - 1]));
                     if reached.is_some_and(|reached| reached <= self.tolerance) {
                         return Ok(Refined { solution, error, grids });
@@ -196,6 +205,7 @@ impl Refinement {
 pub fn on_grid<S, E>(
     points: usize,
     least: usize,
+    orders: Orders,
     mut solve: impl FnMut(usize) -> Result<S, E>,
     no_solution: impl Fn(&E) -> bool,
     view: impl Fn(&S) -> OnGrid,
@@ -211,12 +221,12 @@ pub fn on_grid<S, E>(
     }
     let solution = solve(points)?;
     grids.push(view(&solution));
-    Ok(Refined { error: grid_error(&grids), solution, grids })
+    Ok(Refined { error: grid_error(&grids, orders), solution, grids })
 }
 
 /// Errors of the last of the grids, from the coarsest; none if fewer than three in a row, the last
 /// among them, resolve the contact.
-pub fn grid_error(grids: &[OnGrid]) -> Option<GridError> {
+pub fn grid_error(grids: &[OnGrid], orders: Orders) -> Option<GridError> {
     let unresolved =
         |grid: &OnGrid| grid.contact_area_fraction * (grid.points as f64) < LEAST_CONTACT_POINTS;
     let start = grids.iter().rposition(unresolved).map_or(0, |last| last + 1);
@@ -228,8 +238,8 @@ pub fn grid_error(grids: &[OnGrid]) -> Option<GridError> {
         scaled.map(|(doublings, d)| d / order.powi(doublings as i32)).fold(0.0, f64::max)
     };
     (resolved.len() >= 3).then(|| GridError {
-        friction_coefficient: error(|grid| grid.friction_coefficient, FRICTION_ORDER),
-        contact_area_fraction: error(|grid| grid.contact_area_fraction, AREA_ORDER),
+        friction_coefficient: error(|grid| grid.friction_coefficient, orders.friction),
+        contact_area_fraction: error(|grid| grid.contact_area_fraction, orders.area),
     })
 }
 
@@ -237,8 +247,13 @@ pub fn grid_error(grids: &[OnGrid]) -> Option<GridError> {
 mod tests {
     use super::*;
 
-    const REFINEMENT: Refinement =
-        Refinement { tolerance: 1e-3, watched: Watched::Friction, first: 8, most: 1 << 16 };
+    const REFINEMENT: Refinement = Refinement {
+        tolerance: 1e-3,
+        watched: Watched::Friction,
+        orders: HALF_SPACE,
+        first: 8,
+        most: 1 << 16,
+    };
 
     fn grid(points: usize, friction_coefficient: f64) -> OnGrid {
         OnGrid { points, friction_coefficient, contact_area_fraction: 0.5 }
@@ -251,23 +266,23 @@ mod tests {
     #[test]
     fn an_exactly_quadratic_sequence_has_three_times_its_error() {
         let grids: Vec<OnGrid> = [8, 16, 32, 64].map(|n| quadratic(n).unwrap().unwrap()).to_vec();
-        let error = grid_error(&grids).unwrap().friction_coefficient;
+        let error = grid_error(&grids, HALF_SPACE).unwrap().friction_coefficient;
         approx::assert_relative_eq!(error, 3.0 * 5.0 / 4096.0, max_relative = 1e-12);
-        assert_eq!(grid_error(&grids[..2]), None);
+        assert_eq!(grid_error(&grids[..2], HALF_SPACE), None);
     }
 
     #[test]
     fn grids_that_agree_by_chance_are_not_believed() {
         let grids = [grid(8, 1.0), grid(16, 0.6), grid(32, 0.6), grid(64, 0.6)];
-        assert_eq!(grid_error(&grids).unwrap().friction_coefficient, 0.4 / 16.0);
+        assert_eq!(grid_error(&grids, HALF_SPACE).unwrap().friction_coefficient, 0.4 / 16.0);
     }
 
     #[test]
     fn one_node_in_contact_is_no_resolved_contact() {
         let small = |points| OnGrid { contact_area_fraction: 0.01, ..grid(points, 0.3) };
         let grids = [64, 128, 256, 512].map(small);
-        assert_eq!(grid_error(&grids), None);
-        assert!(grid_error(&[64, 128, 256, 512, 1024].map(small)).is_some());
+        assert_eq!(grid_error(&grids, HALF_SPACE), None);
+        assert!(grid_error(&[64, 128, 256, 512, 1024].map(small), HALF_SPACE).is_some());
     }
 
     #[test]
@@ -333,7 +348,7 @@ mod tests {
     #[test]
     fn a_given_grid_is_judged_by_the_coarser_ones() {
         let solve = |points: usize| quadratic(points).map(Option::unwrap);
-        let refined = on_grid(64, 8, solve, |()| false, |grid| *grid).unwrap();
+        let refined = on_grid(64, 8, HALF_SPACE, solve, |()| false, |grid| *grid).unwrap();
         assert_eq!(refined.grids.iter().map(|g| g.points).collect::<Vec<_>>(), [8, 16, 32, 64]);
         approx::assert_relative_eq!(
             refined.error.unwrap().friction_coefficient,
@@ -348,9 +363,9 @@ mod tests {
             16 => Err("the disk is full"),
             _ => quadratic(points).map(Option::unwrap).map_err(|()| "never"),
         };
-        let passed_over = on_grid(64, 8, solve, |_| true, |grid| *grid).unwrap();
+        let passed_over = on_grid(64, 8, HALF_SPACE, solve, |_| true, |grid| *grid).unwrap();
         assert_eq!((passed_over.error, passed_over.grids.len()), (None, 2));
-        let told = on_grid(64, 8, solve, |why| *why == "no solution", |grid| *grid);
+        let told = on_grid(64, 8, HALF_SPACE, solve, |why| *why == "no solution", |grid| *grid);
         assert_eq!(told.unwrap_err(), "the disk is full");
     }
 }

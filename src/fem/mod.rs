@@ -12,11 +12,13 @@
 //! | [`profile`] | the rigid profile: height, slope and curvature anywhere |
 //! | [`mesh`] | graded rows of parallelograms, the integration of an element |
 //! | [`unknowns`] | the unknowns of a block whose upper edge moves as a whole |
+//! | [`cost`] | what contacts cost |
 //! | [`error`] | what can go wrong |
 //!
 //! Elements are bilinear; their volumetric part is integrated at the centre alone (selective
 //! reduced integration), which keeps them from locking at ν = 0.49.
 
+pub mod cost;
 pub mod error;
 mod kinematics;
 pub mod mesh;

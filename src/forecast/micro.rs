@@ -2,35 +2,13 @@
 
 use super::{CurveForecast, ForecastError, Trial};
 use crate::contact::SlidingContact;
+use crate::fem::cost::MeshCost;
+use crate::fem::profile::RigidProfile;
 use crate::multiscale::scales::Scales;
 use crate::numerics::Interrupt;
 use crate::stages::micro::Micro;
 use crate::stages::{SolveError, StageError};
 use serde::Serialize;
-
-/// Seconds of a microscale on 128 columns for each MPa that it is pressed to, with all its samples: of
-/// the main job, 28 s of two threads for 43 MPa. Elements cost alike up to a power of 1.15 in their number.
-const SECONDS_PER_MPA: f64 = 0.65;
-const REFERENCE_COLUMNS: f64 = 128.0;
-const GROWTH: f64 = 1.15;
-
-/// Seconds of a curve with all waves at finite deformation for each pressure on 128 columns: three waves of the
-/// verification recipe, 153 pressures on 256 columns in 80 s.
-const SECONDS_PER_SOLVE: f64 = 0.24;
-
-/// Expected seconds of a microscale that is pressed to so many MPa, on one thread.
-pub(crate) fn seconds_pressed_to(most_pressure_mpa: f64, columns: usize) -> f64 {
-    SECONDS_PER_MPA * growth(columns) * most_pressure_mpa
-}
-
-/// Expected seconds of so many pressures with all waves at finite deformation, on one thread.
-pub(crate) fn seconds_of_solves(solves: f64, columns: usize) -> f64 {
-    SECONDS_PER_SOLVE * growth(columns) * solves
-}
-
-fn growth(columns: usize) -> f64 {
-    (columns as f64 / REFERENCE_COLUMNS).powf(GROWTH)
-}
 
 /// A microscale at one speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -99,6 +77,8 @@ pub(super) fn microscales(
                 shortest,
             );
             let most_pressure_mpa = most / 1e6;
+            let profile = RigidProfile::from_waves(&scales.micro, longest.wavelength);
+            let mesh = MeshCost::new(&profile, columns, parameters.estimate_mesh_error);
             let each = if scales.micro.len() == 1 { 1.0 } else { realisations };
             let forecast = MicroForecast {
                 waves: surface.waves,
@@ -106,7 +86,7 @@ pub(super) fn microscales(
                 micro_waves: scales.micro.len(),
                 columns,
                 most_pressure_mpa,
-                seconds: each * seconds_pressed_to(most_pressure_mpa, columns),
+                seconds: each * mesh.seconds_pressed_to(most_pressure_mpa),
             };
             found.push((forecast, scales.clone()));
         }

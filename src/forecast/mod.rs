@@ -6,10 +6,12 @@
 //! many more are needed. Finite elements are too dear to try; their cost is that of the main job,
 //! scaled ([`micro`]).
 
+mod fem;
 pub mod micro;
 mod multilevel;
 mod scales;
 
+pub use fem::FemForecast;
 pub use micro::MicroForecast;
 pub use multilevel::MultilevelForecast;
 pub use scales::{ScaleForecast, ScaleModel};
@@ -107,6 +109,8 @@ pub struct Forecast {
     pub curves: Vec<CurveForecast>,
     /// Microscales at finite deformation.
     pub micro: Vec<MicroForecast>,
+    /// Curves with all waves at finite deformation.
+    pub fem: Vec<FemForecast>,
     /// Realisations solved under both models.
     pub multilevel: Vec<MultilevelForecast>,
     /// All stages in their order.
@@ -149,8 +153,11 @@ pub fn forecast(
         // table, a fifth of the half-space in the main job.
         stages.push(StageForecast { stage: Stage::Hybrid, seconds: Some(0.2 * half_space) });
     }
-    if chain.fem.is_some() {
-        stages.push(StageForecast { stage: Stage::Fem, seconds: None });
+    let mut all_waves = Vec::new();
+    if let Some(parameters) = chain.fem {
+        all_waves = fem::curves(parameters, &chain, &trial, &curves);
+        let seconds = fem::seconds(&all_waves, threads);
+        stages.push(StageForecast { stage: Stage::Fem, seconds: Some(seconds) });
     }
     let mut pairs = Vec::new();
     if let Some(parameters) = chain.multilevel {
@@ -162,8 +169,17 @@ pub fn forecast(
     let most = curves.iter().map(|curve| curve.grid_points[1]).max().unwrap_or(0);
     // Each thread keeps the contacts of a curve on all of its grids: twice the finest one.
     let points = 2.0 * most as f64 * threads as f64;
-    let megabytes = BASE_MEGABYTES + BYTES_PER_POINT * points / 1e6;
-    Ok(Forecast { curves, micro: microscales, multilevel: pairs, stages, megabytes })
+    let half_space = BYTES_PER_POINT * points / 1e6;
+    let blocks = all_waves.iter().map(|curve| curve.megabytes_each).fold(0.0, f64::max);
+    let megabytes = BASE_MEGABYTES + half_space.max(blocks * threads as f64);
+    Ok(Forecast {
+        curves,
+        micro: microscales,
+        fem: all_waves,
+        multilevel: pairs,
+        stages,
+        megabytes,
+    })
 }
 
 /// Computes all stages up to the half-space in a folder; returns the seconds of those before it, and

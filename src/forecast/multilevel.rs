@@ -1,14 +1,11 @@
 //! How many realisations the stage multilevel will solve with finite elements, and what they cost.
 
-use super::micro::seconds_of_solves;
 use super::{CurveForecast, Trial};
+use crate::fem::cost::solves_of_curve;
 use crate::recipe::Chain;
 use crate::stages::fem;
-use crate::stages::multilevel::{Multilevel, is_negligible, solves_of_curve};
+use crate::stages::multilevel::{Multilevel, is_negligible};
 use serde::Serialize;
-
-/// Half the columns too, for the error by the mesh, cost two fifths more.
-const WITH_MESH_ERROR: f64 = 1.4;
 
 /// The realisations of one approximation at one speed that are solved under both models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,7 +32,6 @@ pub(super) fn pairs(
     curves: &[CurveForecast],
 ) -> Vec<MultilevelForecast> {
     let fem = parameters.fem();
-    let meshes = if fem.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
     let solves = solves_of_curve(&chain.bem.area_fractions, fem.pressure_ratio);
     let tolerance = chain.bem.average_tolerance;
     let of_curve = |curve: &CurveForecast| {
@@ -52,7 +48,7 @@ pub(super) fn pairs(
             pairs,
             most_pairs,
             columns,
-            seconds_each: meshes * seconds_of_solves(solves, columns),
+            seconds_each: fem::cost(&fem, surface).seconds_of_solves(solves),
         })
     };
     curves.iter().filter_map(of_curve).collect()

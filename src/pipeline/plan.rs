@@ -118,9 +118,13 @@ impl<'a> Plan<'a> {
                 let pairs = (Stage::Multilevel, multilevel::PAIRS_FILE);
                 let multilevel = chain.multilevel.map(|_| [averages, pairs]);
                 let theories = (!chain.tables.theories.is_empty()).then_some(surfaces);
+                let samples = (Stage::Micro, micro::SAMPLES_FILE);
+                let corrections = !chain.tables.published_corrections.is_empty();
+                let corrections = corrections.then_some(samples);
                 let waves = (Stage::Approximate, approximate::WAVES_FILE);
                 let finite = hybrid.into_iter().chain(fem).chain(multilevel.into_iter().flatten());
-                [curves, waves].into_iter().chain(finite).chain(theories).collect()
+                let others = theories.into_iter().chain(corrections);
+                [curves, waves].into_iter().chain(finite).chain(others).collect()
             }
         }
     }

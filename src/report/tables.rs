@@ -2,7 +2,7 @@
 //! column per realisation, their average.
 
 use crate::artifact::{ArtifactError, RunView};
-use crate::stages::tables::{ComparisonRow, FrictionRow};
+use crate::stages::tables::{ComparisonRow, CorrectionRow, FrictionRow, Model};
 use crate::text::{latex_text, markdown_text};
 use polars::prelude::{Column, DataFrame, PolarsError};
 use std::fmt::Write;
@@ -191,35 +191,83 @@ pub fn markdown(tables: &[FrictionTable], about: &About) -> String {
 
 /// Computed beside published friction as Markdown, a table for each published one, after the note
 /// of the recipe.
-pub fn comparison_markdown(note: &str, rows: &[ComparisonRow], realisations: usize) -> String {
+pub fn comparison_markdown(
+    note: &str,
+    rows: &[ComparisonRow],
+    corrections: &[CorrectionRow],
+) -> String {
     let mut text = format!("{}\n\n", note.trim());
     for table in rows.chunk_by(|a, b| a.published_table == b.published_table) {
         let first = &table[0];
         let _ = writeln!(
             text,
-            "## {}\n\n{} waves, {} mm/s; computed: mean of {realisations} realisations and half \
-             width of its 95 % confidence interval, asperity {}\n",
+            "## {}\n\n{} waves, {} mm/s, `{}`; computed: mean of {} realisations, half width of its 95 % \
+             confidence interval and estimated error by the {}, asperity {}\n",
             markdown_text(&first.published_table),
             first.waves,
             first.speed_mm_s,
+            first.model,
+            first.realisations,
+            if first.model == Model::Bem.name() { "grid" } else { "mesh" },
             crate::artifact::TOOL_VERSION
         );
-        text.push_str("| area fraction | published | computed | 95 % | difference |\n");
-        text.push_str("|---:|---:|---:|---:|---:|\n");
+        text.push_str(
+            "| area fraction | published | computed | 95 % | discretisation | difference |\n",
+        );
+        text.push_str("|---:|---:|---:|---:|---:|---:|\n");
         for row in table {
-            let interval = row.confidence_95.map_or(String::new(), |half| format!("± {half:.3}"));
+            let error = |value: Option<f64>, digits: usize| {
+                value.map_or(String::new(), |half| format!("± {half:.digits$}"))
+            };
             let _ = writeln!(
                 text,
-                "| {} | {:.3} | {:.3} | {interval} | {:+.1} % |",
+                "| {} | {:.3} | {:.3} | {} | {} | {:+.1} % |",
                 row.contact_area_fraction,
                 row.published,
                 row.computed,
+                error(row.confidence_95, 3),
+                error(row.discretisation_error, 4),
                 100.0 * row.relative_difference
             );
         }
         text.push('\n');
     }
+    for table in corrections.chunk_by(|a, b| a.published_table == b.published_table) {
+        corrections_markdown(&mut text, table);
+    }
     text
+}
+
+/// Published beside computed friction of a microscale, of one table.
+fn corrections_markdown(text: &mut String, table: &[CorrectionRow]) {
+    let first = &table[0];
+    let _ = writeln!(
+        text,
+        "## {}\n\nMicroscale of {} waves, {} mm/s; computed: between samples, error of the difference by \
+         interpolation at most {:.1e}, asperity {}\n",
+        markdown_text(&first.published_table),
+        first.waves,
+        first.speed_mm_s,
+        first.interpolation_error,
+        crate::artifact::TOOL_VERSION
+    );
+    text.push_str(
+        "| pressure (MPa) | half-space, published | computed | finite deformation, published | computed | mesh |\n\
+         |---:|---:|---:|---:|---:|---:|\n",
+    );
+    for row in table {
+        let mesh = row.discretisation_error.map_or(String::new(), |error| format!("± {error:.4}"));
+        let _ = writeln!(
+            text,
+            "| {} | {:.4} | {:.4} | {:.4} | {:.4} | {mesh} |",
+            row.pressure_mpa,
+            row.published_half_space,
+            row.computed_half_space,
+            row.published_finite_deformation,
+            row.computed_finite_deformation,
+        );
+    }
+    text.push('\n');
 }
 
 /// Tables as LaTeX with booktabs, each a floating table with its caption.

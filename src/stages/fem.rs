@@ -8,6 +8,7 @@ use super::bem::{Bem, CURVES_FILE as BEM_CURVES, CurveRow};
 use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, Watch, schema_of};
 use crate::artifact::{ArtifactError, Metadata, Row, RunView, SchemaVersion, SolveStore};
+use crate::fem::cost::MeshCost;
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
 pub(crate) use curve::CurveResult as FemCurve;
@@ -18,12 +19,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub use task::Task;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 7;
+pub const REVISION: u32 = 8;
 
 /// Section `[fem]` of a recipe.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Fem {
+    /// Numbers of waves whose surfaces are solved, among those of `[realise]`; all of them if empty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub waves: Vec<u32>,
     /// Elements on the shortest wave.
     pub columns_per_shortest_wavelength: u32,
     /// Ratio of neighbouring pressures that are solved; friction is interpolated between them.
@@ -37,6 +41,7 @@ pub struct Fem {
 impl Default for Fem {
     fn default() -> Self {
         Self {
+            waves: Vec::new(),
             columns_per_shortest_wavelength: 96,
             pressure_ratio: 1.25,
             estimate_mesh_error: true,
@@ -45,6 +50,11 @@ impl Default for Fem {
 }
 
 impl Fem {
+    /// Whether surfaces of so many waves are solved.
+    pub fn solves(&self, waves: u32) -> bool {
+        self.waves.is_empty() || self.waves.contains(&waves)
+    }
+
     pub(crate) fn check(&self) -> Result<(), Violation> {
         let columns = self.columns_per_shortest_wavelength;
         let key = "fem.columns_per_shortest_wavelength";
@@ -161,7 +171,7 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
     let (half_space, _) = run.read_table::<CurveRow>("bem", BEM_CURVES)?;
-    let tasks = task::tasks(bem, &surfaces, &half_space);
+    let tasks = task::tasks(parameters, bem, &surfaces, &half_space);
     let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
     (context.watch.progress)(0, total);
     let results: Vec<FemCurve> = tasks
@@ -194,7 +204,7 @@ pub fn missing(
     store: &SolveStore,
 ) -> Result<Vec<Task>, ArtifactError> {
     let mut missing = Vec::new();
-    for task in task::tasks(bem, surfaces, curves) {
+    for task in task::tasks(parameters, bem, surfaces, curves) {
         if !task.is_finished(parameters, &bem.area_fractions, rubber, store)? {
             missing.push(task);
         }
@@ -215,6 +225,11 @@ pub(crate) fn curve(
     watch: Watch,
 ) -> Result<FemCurve, StageError> {
     task.curve(parameters, area_fractions, rubber, store, watch)
+}
+
+/// What a contact of a surface costs.
+pub(crate) fn cost(parameters: &Fem, surface: &Surface) -> MeshCost {
+    task::cost_of(parameters, surface)
 }
 
 /// Columns of the mesh of a surface.

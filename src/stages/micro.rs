@@ -23,7 +23,7 @@ pub(crate) use task::is_of;
 pub use task::{Owner, PressedSurface, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 5;
+pub const REVISION: u32 = 6;
 
 /// Section `[micro]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -42,6 +42,10 @@ pub struct Micro {
     /// Grid points of the macro surface on its shortest wave, at least; the grid is the next power
     /// of two.
     pub points_per_shortest_macro_wavelength: u32,
+    /// Length in mm of a macro contact: branches that relax over a longer distance of sliding do not follow the mean
+    /// strain of the microscale. If not given, all have relaxed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_length_mm: Option<f64>,
 }
 
 impl Default for Micro {
@@ -52,6 +56,7 @@ impl Default for Micro {
             tolerance: 1e-3,
             estimate_mesh_error: true,
             points_per_shortest_macro_wavelength: 32,
+            contact_length_mm: None,
         }
     }
 }
@@ -69,6 +74,10 @@ impl Micro {
         let tolerance = self.tolerance;
         let key = "micro.tolerance";
         demand(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
+        if let Some(length) = self.contact_length_mm {
+            let key = "micro.contact_length_mm";
+            demand(length > 0.0 && length.is_finite(), key, length, "positive and finite")?;
+        }
         let points = self.points_per_shortest_macro_wavelength;
         let key = "micro.points_per_shortest_macro_wavelength";
         demand((4..=4096).contains(&points), key, points, "4 to 4096")

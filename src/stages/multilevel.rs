@@ -29,12 +29,11 @@ pub use rows::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-pub(crate) use shares::solves_of_curve;
 pub use work::Missing;
 use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// Section `[multilevel]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -85,6 +84,7 @@ impl Multilevel {
     /// How the curves of all waves at finite deformation are solved.
     pub fn fem(&self) -> Fem {
         Fem {
+            waves: Vec::new(),
             columns_per_shortest_wavelength: self.columns_per_shortest_wavelength,
             pressure_ratio: self.pressure_ratio,
             estimate_mesh_error: self.estimate_mesh_error,

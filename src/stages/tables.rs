@@ -4,6 +4,7 @@ mod accuracy;
 mod model_error;
 mod models;
 mod multilevel;
+mod published;
 mod theories;
 
 use super::approximate::{ScaleRow, WAVES_FILE};
@@ -11,25 +12,26 @@ use super::bem::{CURVES_FILE, CurveRow};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, HybridRow};
-use super::realise::same_surfaces;
 use super::{Context, StageError, schema_of};
-use crate::artifact::{Digest, Input, Metadata, Row, RunView, SchemaVersion};
-use crate::files;
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
 use accuracy::missed;
 use models::comparisons;
 pub use models::{MODELS_FILE, ModelRow};
+pub use published::{
+    COMPARISON_FILE, CORRECTIONS_FILE, ComparisonRow, CorrectionRow, NOTE_KEY, Published,
+    PublishedCorrections, inputs,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 6;
+pub const REVISION: u32 = 7;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -38,6 +40,9 @@ pub struct Tables {
     /// Published tables to stand beside the computed ones.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
+    /// Published corrections of the microscale to stand beside the computed ones.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub published_corrections: Vec<PublishedCorrections>,
     /// What a reader of the comparison should know, in Markdown.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub note: String,
@@ -60,25 +65,6 @@ impl Tables {
         demand(once, "tables.theories", theories, "a list without repeats")?;
         self.theory_constants.check()
     }
-}
-
-/// A published table of friction over contact area.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Published {
-    /// What it is called where it was published.
-    pub name: String,
-    /// Number of waves of its approximation.
-    pub waves: u32,
-    /// Its sliding speed in mm/s.
-    pub speed_mm_s: f64,
-    /// Its contact model.
-    #[serde(default)]
-    pub model: Model,
-    /// CSV file with at least the columns `area_fraction` and `average`.
-    #[serde(with = "crate::files::name::path")]
-    #[schemars(with = "String")]
-    pub file: PathBuf,
 }
 
 /// A contact model.
@@ -204,76 +190,15 @@ impl Row for FrictionRow {
     const VERSION: u32 = 6;
 }
 
-/// Computed beside published friction: `comparison.arrow`, where the recipe names published
-/// tables.
-pub const COMPARISON_FILE: &str = "comparison.arrow";
-/// Metadata of [`COMPARISON_FILE`]: the note of the recipe.
-pub const NOTE_KEY: &str = "note";
-
-/// Computed beside published friction at one contact area.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ComparisonRow {
-    /// Name of the published table.
-    pub published_table: String,
-    /// Number of waves of the approximation.
-    pub waves: u32,
-    /// Sliding speed.
-    #[schemars(extend("unit" = "mm/s"))]
-    pub speed_mm_s: f64,
-    /// Contact area fraction.
-    #[schemars(extend("unit" = "1"))]
-    pub contact_area_fraction: f64,
-    /// Published average.
-    #[schemars(extend("unit" = "1"))]
-    pub published: f64,
-    /// Computed mean.
-    #[schemars(extend("unit" = "1"))]
-    pub computed: f64,
-    /// Half width of the 95 % confidence interval of the computed mean.
-    #[schemars(extend("unit" = "1"))]
-    pub confidence_95: Option<f64>,
-    /// Computed less published, over published.
-    #[schemars(extend("unit" = "1"))]
-    pub relative_difference: f64,
-}
-
-impl Row for ComparisonRow {
-    const SCHEMA: &'static str = "asperity.tables.comparison";
-    const VERSION: u32 = 1;
-}
-
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     vec![
         schema_of::<FrictionRow>(),
         schema_of::<ComparisonRow>(),
+        schema_of::<CorrectionRow>(),
         schema_of::<ModelRow>(),
         schema_of::<TheoryRow>(),
     ]
-}
-
-/// The published tables as inputs of the stage.
-///
-/// # Errors
-/// [`StageError::Artifact`] for a file that cannot be read.
-pub fn inputs(parameters: &Tables) -> Result<Vec<Input>, StageError> {
-    let input = |published: &Published| {
-        Ok(Input {
-            name: published.name.clone(),
-            digest: digest(&published.file)?,
-            origin: Some(published.file.display().to_string()),
-        })
-    };
-    parameters.published.iter().map(input).collect()
-}
-
-fn digest(path: &Path) -> Result<Digest, StageError> {
-    let unreadable = |source: std::io::Error| StageError::Published {
-        path: path.to_owned(),
-        source: source.into(),
-    };
-    files::admit(path, files::LARGEST_NUMBERS).map_err(unreadable)?;
-    Ok(Digest::of_file(path)?)
 }
 
 /// Averages the curves and writes the tables; returns warnings.
@@ -321,55 +246,8 @@ pub fn run(
     if models.hybrid || models.fem || models.multilevel || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
     }
-    if parameters.published.is_empty() {
-        return Ok(warnings);
-    }
-    let mut compared = Vec::new();
-    for published in &parameters.published {
-        compared.extend(compare(published, &rows, &fitted)?);
-    }
-    let metadata = Metadata::from([(NOTE_KEY.to_owned(), parameters.note.clone())]);
-    context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
+    published::write(parameters, &rows, &fitted, run, context)?;
     Ok(warnings)
-}
-
-/// The computed rows that the published table has too. Surfaces that two numbers of waves share are computed
-/// under one of them.
-fn compare(
-    published: &Published,
-    rows: &[FrictionRow],
-    fitted: &[ScaleRow],
-) -> Result<Vec<ComparisonRow>, StageError> {
-    #[derive(Deserialize)]
-    struct Line {
-        area_fraction: f64,
-        average: f64,
-    }
-    let bad = |source| StageError::Published { path: published.file.clone(), source };
-    let mut reader = csv::Reader::from_path(&published.file).map_err(bad)?;
-    let own_waves =
-        |waves: u32| waves == published.waves || same_surfaces(fitted, waves, published.waves);
-    let mut compared = Vec::new();
-    for line in reader.deserialize::<Line>() {
-        let line = line.map_err(bad)?;
-        let computed = rows.iter().find(|row| {
-            row.model == published.model.name()
-                && own_waves(row.waves)
-                && row.speed_mm_s == published.speed_mm_s
-                && row.contact_area_fraction == line.area_fraction
-        });
-        compared.extend(computed.map(|row| ComparisonRow {
-            published_table: published.name.clone(),
-            waves: published.waves,
-            speed_mm_s: row.speed_mm_s,
-            contact_area_fraction: row.contact_area_fraction,
-            published: line.average,
-            computed: row.mean,
-            confidence_95: row.confidence_95,
-            relative_difference: row.mean / line.average - 1.0,
-        }));
-    }
-    Ok(compared)
 }
 
 /// Friction of one realisation at one contact area, of any model.

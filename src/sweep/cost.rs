@@ -8,11 +8,10 @@
 use super::task::{Solvers, Task};
 use super::{Prepared, SweepError};
 use crate::artifact::SolveStore;
-use crate::forecast::micro as finite_elements;
+use crate::fem::cost::{MeshCost, solves_of_curve};
 use crate::recipe::Case;
 use crate::stages::bem::{self, SolveRow};
 use crate::stages::fem::{self, Fem};
-use crate::stages::multilevel::solves_of_curve;
 use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -25,12 +24,8 @@ const SECONDS_PER_POINT_AND_ITERATION: f64 = 4.4e-7;
 const TYPICAL_ITERATIONS: f64 = 22.0;
 /// The largest local pressure over the mean pressure in the contacts: 2.1 and 1.4 in the main job.
 const PEAK: f64 = 1.7;
-/// Coarser meshes for an error estimate cost two fifths more.
-const WITH_MESH_ERROR: f64 = 1.4;
 /// Bytes for a grid point of a contact with its coarser grids, as in a forecast.
 const BYTES_PER_POINT: f64 = 250.0;
-/// Memory of a finite-element block for a column of its mesh: 17 MB for 128 and 37 MB for 256 of them.
-const MEGABYTES_PER_COLUMN: f64 = 0.15;
 
 /// Seconds and memory of one task.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -130,10 +125,8 @@ impl<'a> Costs<'a> {
                     PEAK * pressed.most_pressure_mpa / pressed.contact_area_fraction
                 };
                 let most = task.surfaces.iter().map(local).fold(0.0, f64::max);
-                let columns = task.columns(&self.solvers.micro);
-                let twice =
-                    if self.solvers.micro.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
-                finite(columns, twice * finite_elements::seconds_pressed_to(most, columns))
+                let mesh = task.cost(&self.solvers.micro);
+                finite(mesh, mesh.seconds_pressed_to(most))
             }
             Task::Fem(task) => self.all_waves(task, &self.solvers.fem),
             Task::Multilevel(task) => self.all_waves(task, &self.solvers.multilevel.fem()),
@@ -141,15 +134,14 @@ impl<'a> Costs<'a> {
     }
 
     fn all_waves(&self, task: &fem::Task, parameters: &Fem) -> Cost {
-        let columns = task.columns(parameters);
         let solves = solves_of_curve(&self.solvers.bem.area_fractions, parameters.pressure_ratio);
-        let twice = if parameters.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
-        finite(columns, twice * finite_elements::seconds_of_solves(solves, columns))
+        let mesh = fem::cost(parameters, &task.surface);
+        finite(mesh, mesh.seconds_of_solves(solves))
     }
 }
 
-fn finite(columns: usize, seconds: f64) -> Cost {
-    Cost { seconds, megabytes: MEGABYTES_PER_COLUMN * columns as f64 }
+fn finite(mesh: MeshCost, seconds: f64) -> Cost {
+    Cost { seconds, megabytes: mesh.megabytes() }
 }
 
 impl Trial {

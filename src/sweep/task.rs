@@ -47,7 +47,7 @@ impl Solvers {
             Work::Chain(Chain { bem, micro, fem, multilevel, .. }) => Ok(Self {
                 bem: bem.clone(),
                 micro: micro.cloned().unwrap_or_default(),
-                fem: fem.copied().unwrap_or_default(),
+                fem: fem.cloned().unwrap_or_default(),
                 multilevel: multilevel.copied().unwrap_or_default(),
             }),
             Work::Sinusoid(_) => Err(Violation::SweepOfSinusoid),

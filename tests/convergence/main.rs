@@ -9,6 +9,7 @@
 mod surfaces;
 
 mod estimate;
+mod finite_elements;
 
 use asperity::contact::{ContactSolution, SlidingContact};
 use asperity::reference::Westergaard;

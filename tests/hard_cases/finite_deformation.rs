@@ -3,7 +3,7 @@
 use crate::case::{Case, enter_refusal};
 use crate::surfaces::{shortest_wave, table_2_1};
 use asperity::contact::SlidingContact;
-use asperity::contact::refine::{OnGrid, RefineError, Refinement, Watched};
+use asperity::contact::refine::{FINITE_ELEMENTS, OnGrid, RefineError, Refinement, Watched};
 use asperity::fem::error::FemError;
 use asperity::fem::profile::RigidProfile;
 use asperity::fem::steady::{BlockOptions, SteadyContact, solution::SteadySolution};
@@ -146,11 +146,16 @@ fn a_path_of_the_linear_law_that_ends_is_refused() {
 /// it is asked for is refused.
 #[test]
 fn a_tip_of_one_element_has_no_accuracy() {
-    let refinement =
-        Refinement { tolerance: 1e-2, watched: Watched::Friction, first: 16, most: 64 };
+    let refinement = Refinement {
+        tolerance: 1e-2,
+        watched: Watched::Friction,
+        orders: FINITE_ELEMENTS,
+        first: 16,
+        most: 64,
+    };
     let profile = || sine(shortest_wave().wavelength);
     let solve = |columns: usize| {
-        let options = BlockOptions::new(columns);
+        let options = BlockOptions::of_profile(columns, &profile());
         SteadyContact::new(&table_2_1(), Rheology::NeoHookean, 0.01, profile(), options)?
             .solve(1e5)
             .map(|solution| Some((columns, solution)))

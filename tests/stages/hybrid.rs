@@ -15,7 +15,9 @@ use asperity::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};
 use asperity::stages::hybrid::{HYBRID_FILE, HybridRow, LOCAL_FILE, LocalRow};
 use asperity::stages::micro::{LAW_FILE, LawRow, SAMPLES_FILE, SampleRow};
 use asperity::stages::realise::read_surfaces;
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow};
+use asperity::stages::tables::{
+    CORRECTIONS_FILE, CorrectionRow, FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow,
+};
 use asperity::surface::{Wave, wave};
 use std::path::Path;
 
@@ -69,7 +71,7 @@ fn the_microscale_is_solved_over_the_pressures_that_the_macro_contact_asks_for()
     let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
     let wave = Wave { wavelength: 6.25e-5, amplitude: 1.6e-5, phase: 0.0 };
     let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
-    let options = BlockOptions::new(COLUMNS);
+    let options = BlockOptions::of_profile(COLUMNS, &profile);
     let middle = &samples[samples.len() / 2];
     let mut block =
         SteadyContact::new(&rubber, Rheology::NeoHookean, 0.02, profile, options).unwrap();
@@ -306,7 +308,7 @@ fn an_accuracy_brings_the_errors_by_the_mesh_into_the_tables() {
     // Three times as many columns have a ninth of the error.
     let wave = Wave { wavelength: 6.25e-5, amplitude: 1.6e-5, phase: 0.0 };
     let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
-    let options = BlockOptions::new(3 * COLUMNS);
+    let options = BlockOptions::of_profile(3 * COLUMNS, &profile);
     let mut finer =
         SteadyContact::new(&rubber, Rheology::NeoHookean, 0.02, profile, options).unwrap();
     let mut covered = 0;
@@ -326,4 +328,51 @@ fn an_accuracy_brings_the_errors_by_the_mesh_into_the_tables() {
     let of = |model: &str| rows.iter().filter(|row| row.model == model).count();
     assert_eq!((of("bem"), of("hybrid")), (2, 2));
     assert!(of("fem") > 0);
+}
+
+/// A published correction at a sampled pressure stands beside that sample; one between two, between them; one beyond
+/// all is left out.
+#[test]
+fn published_corrections_stand_beside_the_samples() {
+    let extra = r#"
+        [[tables.published_corrections]]
+        name = "Local"
+        waves = 2
+        speed_mm_s = 20.0
+        file = "local.csv"
+    "#;
+    let campaign = campaign(0.016, extra);
+    campaign
+        .write("local.csv", "pressure_mpa,friction_bem,friction_fem\n1.0,0.5,0.4\n1e4,0.1,0.1\n");
+    let (_, view) = solved(&campaign);
+    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let (rows, _) = view.read_table::<CorrectionRow>("tables", CORRECTIONS_FILE).unwrap();
+    let [row] = rows.as_slice() else { panic!("{rows:?}") };
+    assert_eq!((row.published_half_space, row.published_finite_deformation), (0.5, 0.4));
+    let above = samples.iter().position(|sample| sample.pressure_mpa > 1.0).unwrap();
+    let ends = [&samples[above - 1], &samples[above]];
+    for (computed, value) in [
+        (row.computed_half_space, (|s: &SampleRow| s.friction_half_space) as fn(&SampleRow) -> f64),
+        (row.computed_finite_deformation, |s| s.friction_finite_deformation),
+    ] {
+        let [a, b] = ends.map(value);
+        let margin = 0.1 * (a - b).abs();
+        assert!((a.min(b) - margin..=a.max(b) + margin).contains(&computed), "{computed} {a} {b}");
+    }
+    assert!(row.discretisation_error.unwrap() > 0.0);
+}
+
+#[test]
+fn finite_elements_of_all_waves_are_solved_for_the_numbers_of_waves_that_are_asked_for() {
+    let campaign = campaign(0.004, "[fem]\nwaves = [1]\ncolumns_per_shortest_wavelength = 32");
+    let text = std::fs::read_to_string(campaign.path("recipe.toml")).unwrap();
+    let other = "[[approximate.given]]\nsource = \"another\"\nscales = [{ wavelength_mm = 0.25, amplitude_mm = 0.01 }]\n[realise]";
+    let text = text.replace("[realise]", other).replace("waves = [2]", "waves = [1, 2]");
+    campaign.write("recipe.toml", &text);
+    let (_, view) = solved(&campaign);
+    let (solves, _) = view.read_table::<FemSolveRow>("fem", FEM_SOLVES_FILE).unwrap();
+    assert!(!solves.is_empty() && solves.iter().all(|row| row.waves == 1), "{solves:?}");
+    campaign.write("recipe.toml", &text.replace("[fem]\nwaves = [1]", "[fem]\nwaves = [3]"));
+    let error = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
+    assert!(error.contains("fem.waves") && error.contains("realise.waves"), "{error}");
 }

@@ -54,7 +54,7 @@ fn direct(rubber: &Rubber, row: &PointRow, columns: usize) -> Option<f64> {
         _ => Rheology::NeoHookean,
     };
     let profile = RigidProfile::from_waves(&[wave], 2e-5);
-    let options = BlockOptions::new(columns);
+    let options = BlockOptions::of_profile(columns, &profile);
     let mut contact = SteadyContact::new(rubber, rheology, speed, profile, options).unwrap();
     contact.solve(pressure).ok().map(|solution| solution.friction_coefficient)
 }

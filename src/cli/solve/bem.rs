@@ -13,7 +13,9 @@ use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
 use crate::cli::{CliError, values};
-use crate::contact::refine::{OnGrid, RefineError, Refined, Refinement, Watched, on_grid};
+use crate::contact::refine::{
+    HALF_SPACE, OnGrid, RefineError, Refined, Refinement, Watched, on_grid,
+};
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, SlidingContact};
 use crate::rubber::Rubber;
@@ -156,7 +158,7 @@ impl Bem {
             self.shape.points.or(self.shape.profile.is_some().then_some(shape.heights.len()));
         if let Some(points) = given {
             let no_solution = |error: &CliError| matches!(error, CliError::Failure(_));
-            return on_grid(points, *POINTS_RANGE.start(), solve, no_solution, view);
+            return on_grid(points, *POINTS_RANGE.start(), HALF_SPACE, solve, no_solution, view);
         }
         let watched =
             if rubber.branches.is_empty() { Watched::ContactArea } else { Watched::Friction };
@@ -167,7 +169,8 @@ impl Bem {
             None => shape.heights.len() / 4,
         };
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        let refinement = Refinement { tolerance, watched, first, most: MOST_POINTS };
+        let refinement =
+            Refinement { tolerance, watched, orders: HALF_SPACE, first, most: MOST_POINTS };
         let optional = |points: usize| match solve(points) {
             // A small contact needs a fine grid, and so may its area.
             Err(CliError::Failure(_)) if 2 * points <= MOST_POINTS => Ok(None),

@@ -14,7 +14,7 @@ use crate::cli::output::{json, note, print, refuse_existing, write_file};
 use crate::cli::progress::Spinner;
 use crate::cli::{CliError, threads, values};
 use crate::contact::SlidingContact;
-use crate::contact::refine::{OnGrid, RefineError, Refinement, Watched, on_grid};
+use crate::contact::refine::{FINITE_ELEMENTS, OnGrid, RefineError, Refinement, Watched, on_grid};
 use crate::error_kind::HasKind;
 use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
@@ -217,7 +217,8 @@ impl Fem {
             (None, Route::Steady) => resolution::usual_columns(profile)?,
             (None, Route::Transient) => resolution::usual_columns(profile)? / 4,
         };
-        let options = BlockOptions { height_ratio: self.height, ..BlockOptions::new(columns) };
+        let options = BlockOptions::of_profile(columns, profile);
+        let options = BlockOptions { height_ratio: self.height, ..options };
         options.check(profile.period())?;
         Ok(options)
     }
@@ -234,14 +235,16 @@ impl Fem {
         let least = (resolution::LEAST_COLUMNS_PER_WAVE * waves).ceil() as usize;
         let solve = |columns: usize| {
             let spinner = Spinner::new(quiet, &format!("solving on {columns} columns"));
-            let solution = self.steady_on(rubber, &profile, BlockOptions { columns, ..options });
+            let mesh = BlockOptions::of_profile(columns, &profile);
+            let mesh = BlockOptions { height_ratio: options.height_ratio, ..mesh };
+            let solution = self.steady_on(rubber, &profile, mesh);
             spinner.finish();
             solution
         };
         let refined = match self.tolerance {
             None => {
                 let no_solution = |error: &CliError| matches!(error, CliError::Failure(_));
-                on_grid(options.columns, least, solve, no_solution, view)?
+                on_grid(options.columns, least, FINITE_ELEMENTS, solve, no_solution, view)?
             }
             Some(tolerance) => {
                 let watched = match rubber.branches.is_empty() {
@@ -253,7 +256,8 @@ impl Fem {
                     Err(CliError::Failure(_)) if 2 * columns <= most => Ok(None),
                     solved => solved.map(Some),
                 };
-                let refinement = Refinement { tolerance, watched, first, most };
+                let orders = FINITE_ELEMENTS;
+                let refinement = Refinement { tolerance, watched, orders, first, most };
                 refinement.run(optional, view).map_err(|error| match error {
                     RefineError::Solve(error) => error,
                     unreached @ RefineError::NotReached { .. } => {

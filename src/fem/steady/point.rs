@@ -234,7 +234,16 @@ impl Law<'_> {
             Rheology::Linear => 1.0,
         };
         let modulus = self.modulus(spring, volume);
-        let factor = if self.volumetric { modulus } else { modulus.sqrt() };
+        let factor = if self.volumetric {
+            modulus
+        } else {
+            if modulus < 0.0 {
+                // The metric stands twice in a relief, so the sign goes to what is remembered.
+                memory.weights = memory.weights.map(|weight| -weight);
+                memory.source = memory.source.map(|source| -source);
+            }
+            modulus.abs().sqrt()
+        };
         memory.metric = metric.map(|g| factor * g);
         point.modulus += modulus;
         point.pressure += self.pressure(spring, volume);

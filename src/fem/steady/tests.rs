@@ -34,6 +34,46 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
 
+/// Of a contact that lasts for no time the mean of a row is that of the glass, and what varies along it is that of
+/// the rubber.
+#[test]
+fn in_a_short_contact_the_mean_is_glassy_and_the_rest_relaxes() {
+    let (rubber, speed) = (Rubber::table_2_1(), 0.01);
+    let glassy =
+        rubber.equilibrium_modulus + rubber.branches.iter().map(|b| b.modulus).sum::<f64>();
+    let options = BlockOptions::new(32);
+    let forces = |finite: FiniteStrainRubber| {
+        let setting = Setting { finite, ..setting(&rubber, Rheology::NeoHookean, speed) };
+        let mut block = Block::new(Grid::new(&options, PERIOD), setting.material(PERIOD));
+        let grid = block.grid.clone();
+        let sheared = |row: usize| {
+            let z = grid.levels[row];
+            [2.0 * z, -0.05 * z].map(Long::from).repeat(grid.nodes_in(row))
+        };
+        let displacements: Vec<Long> = (0..=grid.rows()).flat_map(sheared).collect();
+        block.deform(&displacements).unwrap().0
+    };
+    let finite = |rubber: &Rubber| FiniteStrainRubber::new(rubber, Rheology::NeoHookean).unwrap();
+    let glass = forces(finite(&Rubber::elastic(glassy, rubber.poisson_ratio)));
+    let short = forces(finite(&rubber).in_a_contact_that_lasts(0.0, PERIOD / speed));
+    let scale = largest(&glass);
+    let apart: Vec<f64> = short.iter().zip(&glass).map(|(short, glass)| short - glass).collect();
+    assert!(largest(&apart) < 1e-8 * scale, "{} of {scale}", largest(&apart));
+    let friction = |length: Option<f64>| {
+        let wave = Wave { wavelength: PERIOD, amplitude: 1e-7, phase: 0.0 };
+        let profile = RigidProfile::from_waves(&[wave], PERIOD);
+        let contact =
+            SteadyContact::new(&rubber, Rheology::NeoHookean, speed, profile, options).unwrap();
+        let mut contact = match length {
+            Some(length) => contact.lasting(length),
+            None => contact,
+        };
+        contact.solve(1e4).unwrap().friction_coefficient
+    };
+    let (relaxed, short) = (friction(None), friction(Some(1e-2 * PERIOD)));
+    assert!((short / relaxed - 1.0).abs() < 2e-3, "{short} {relaxed}");
+}
+
 #[test]
 fn homogeneous_deformation_is_in_equilibrium() {
     let grading = Grading { first: 0.8, growth: 1.3 };

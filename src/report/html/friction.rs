@@ -145,10 +145,10 @@ fn friction_table(one: &FrictionTable, about: &About) -> Markup {
 fn comparison_table(rows: &[ComparisonRow]) -> Markup {
     table(
         &format!(
-            "{}, published and computed, {} waves, {} mm/s",
-            rows[0].published_table, rows[0].waves, rows[0].speed_mm_s
+            "{}, published and computed, {} waves, {} mm/s, {}",
+            rows[0].published_table, rows[0].waves, rows[0].speed_mm_s, rows[0].model
         ),
-        &["Ac/A0", "published µ", "computed µ", "± 95 %", "difference"],
+        &["Ac/A0", "published µ", "computed µ", "± 95 %", "grid or mesh", "difference"],
         1,
         rows.iter().map(|row| {
             vec![
@@ -156,6 +156,7 @@ fn comparison_table(rows: &[ComparisonRow]) -> Markup {
                 number(row.published, 3),
                 number(row.computed, 3),
                 optional(row.confidence_95, 2),
+                optional(row.discretisation_error, 2),
                 percent(row.relative_difference),
             ]
         }),

@@ -102,6 +102,27 @@ impl FiniteStrainRubber {
         })
     }
 
+    /// The rubber in a contact that lasts for a `time` in s and returns after a `period` in s, as the steady field
+    /// sees it whose rows repeat after that period.
+    ///
+    /// Of a strain that is the same along a row a branch still carries the share `e^{-time/τ}` at the end of the contact,
+    /// where a steady field has it relaxed for ever; what varies along the row relaxes as before. Such shares of the moduli
+    /// are added to the equilibrium spring, and taken back from what varies by one more branch, of
+    /// negative modulus, that relaxes far more slowly than a row passes.
+    #[must_use]
+    pub fn in_a_contact_that_lasts(mut self, time: f64, period: f64) -> Self {
+        let held = |value: fn(&Spring) -> f64| -> f64 {
+            let share = |branch: &Spring| value(branch) * (-time / branch.relaxation_time).exp();
+            self.branches.iter().map(share).sum()
+        };
+        let (shear, volumetric) = (held(|spring| spring.shear), held(|spring| spring.volumetric));
+        self.equilibrium.shear += shear;
+        self.equilibrium.volumetric += volumetric;
+        let relaxation_time = PERIODS_OF_THE_MEAN * period;
+        self.branches.push(Spring { shear: -shear, volumetric: -volumetric, relaxation_time });
+        self
+    }
+
     /// Energy in Pa of one spring at the strain `m` with the internal tensor `m_i`, both in the
     /// measure of the law; the conjugate stress is `T = 2 ∂ψ/∂m`.
     pub fn energy(&self, spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
@@ -208,5 +229,8 @@ impl FiniteStrainRubber {
     }
 }
 
+/// Periods in which the mean of a row relaxes, where it is to be told from what varies along it: the shortest
+/// variation, of one period, leaks into it by `1 / (2 π)` of the reciprocal.
+const PERIODS_OF_THE_MEAN: f64 = 1e3;
 /// Nearer to incompressible the volumetric stiffness drowns the rest in round-off.
 const MAX_POISSON_RATIO: f64 = 0.4999;

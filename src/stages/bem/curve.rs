@@ -4,7 +4,7 @@ use super::{Bem, SolveRow};
 use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore, Solves};
 use crate::contact::curve::{CurveError, friction_curve};
 use crate::contact::refine::{
-    GridError, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refinement, Watched, on_grid,
+    GridError, HALF_SPACE, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refinement, Watched, on_grid,
 };
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
@@ -139,6 +139,7 @@ impl<'a> Curve<'a> {
                 let refinement = Refinement {
                     tolerance,
                     watched: Watched::FrictionOverArea,
+                    orders: HALF_SPACE,
                     first: self.first_points,
                     most: MOST_POINTS,
                 };
@@ -156,6 +157,7 @@ impl<'a> Curve<'a> {
                 on_grid(
                     points,
                     least,
+                    HALF_SPACE,
                     |points| self.solve(pressure, points),
                     SolveError::is_no_solution,
                     on_its_grid,

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Revision of the solver: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 5;
+const SOLVER_REVISION: u32 = 6;
 
 /// The curve of one surface at one speed.
 pub(crate) struct CurveResult {
@@ -59,7 +59,8 @@ impl<'a> Solver<'a> {
         let waves = &surface.profile;
         let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
         let profile = RigidProfile::from_waves(waves, period);
-        let (rheology, options) = (Rheology::NeoHookean, BlockOptions::new(columns));
+        let options = BlockOptions::of_profile(columns, &profile);
+        let rheology = Rheology::NeoHookean;
         let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?
             .interruptible(watch.interrupted);
         let key = problem_parts(rubber, surface, speed_mm_s, columns);
@@ -83,14 +84,21 @@ impl<'a> Solver<'a> {
     pub fn sweep(&mut self, areas: &[f64], guess: f64) -> Result<Option<FemError>, SolveError> {
         let (smallest, largest) = (areas[0], areas[areas.len() - 1]);
         let mut pressure = guess;
-        let mut row = self.point(pressure)?;
-        while row.contact_area_fraction > smallest && self.solves.len() < MOST_SOLVES {
+        let mut area = self.point(pressure)?.contact_area_fraction;
+        let (mut lower_area, mut too_slight) = (area, None);
+        while lower_area > smallest && self.solves.len() < MOST_SOLVES {
             pressure /= self.ratio;
-            row = self.point(pressure)?;
+            match self.point(pressure) {
+                Ok(row) => lower_area = row.contact_area_fraction,
+                // A contact of less than a node has no solution; those above have.
+                Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => {
+                    too_slight = Some(error);
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
         }
         pressure = guess;
-        let last = self.solves.iter().max_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
-        let mut area = last.map_or(0.0, |row| row.contact_area_fraction);
         let mut ended = None;
         while area < largest && self.solves.len() < MOST_SOLVES {
             let step = if ended.is_none() { self.ratio } else { self.ratio.sqrt() };
@@ -109,7 +117,7 @@ impl<'a> Solver<'a> {
             }
         }
         self.solves.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
-        Ok(ended)
+        Ok(ended.or(too_slight))
     }
 
     /// A warning where friction and heat are apart: the mesh is too coarse for these contacts.

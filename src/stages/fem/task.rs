@@ -3,7 +3,9 @@
 use super::curve::{CurveResult, Solver, problem};
 use super::{Fem, FemCurveRow};
 use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::fem::cost::MeshCost;
 use crate::fem::error::FemError;
+use crate::fem::profile::RigidProfile;
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::rubber::Rubber;
 use crate::stages::bem::{Bem, CurveRow};
@@ -24,10 +26,15 @@ pub struct Task {
     pub first_guess: f64,
 }
 
-/// The surfaces and speeds that the half-space has curves of.
-pub(super) fn tasks(bem: &Bem, surfaces: &[Surface], half_space: &[CurveRow]) -> Vec<Task> {
+/// The surfaces and speeds that the half-space has curves of, as far as they are wanted.
+pub(super) fn tasks(
+    parameters: &Fem,
+    bem: &Bem,
+    surfaces: &[Surface],
+    half_space: &[CurveRow],
+) -> Vec<Task> {
     let mut tasks = Vec::new();
-    for surface in surfaces {
+    for surface in surfaces.iter().filter(|surface| parameters.solves(surface.waves)) {
         for &speed_mm_s in &bem.speeds_mm_s {
             let first = half_space.iter().find(|row| is_of(row, surface, speed_mm_s));
             tasks.extend(first.map(|row| Task {
@@ -165,4 +172,11 @@ pub(super) fn columns_of(parameters: &Fem, surface: &Surface) -> usize {
     let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
     let shortest = present.map(|wave| wave.wavelength).fold(period, f64::min);
     columns(parameters.columns_per_shortest_wavelength, period, shortest)
+}
+
+/// What a contact of a surface costs.
+pub(super) fn cost_of(parameters: &Fem, surface: &Surface) -> MeshCost {
+    let period = surface.profile.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+    let profile = RigidProfile::from_waves(&surface.profile, period);
+    MeshCost::new(&profile, columns_of(parameters, surface), parameters.estimate_mesh_error)
 }

@@ -11,12 +11,12 @@ use crate::multiscale::{LawEnd, LocalLaw};
 use crate::numerics::Interrupt;
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
-use crate::surface::{Wave, wave};
+use crate::surface::wave;
 use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Revision of the solvers: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 4;
+const SOLVER_REVISION: u32 = 5;
 /// Grid points of the half-space on the shortest wave.
 const POINTS_PER_WAVE: f64 = 1024.0;
 /// Samples of the repulsive law up to full contact, at `p* (0.1 + 0.9 t)^4`: see [`LocalLaw`].
@@ -67,7 +67,7 @@ impl<'a> MicroCurve<'a> {
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
-        let stored = store.problem(&problem(rubber, &task.micro, task.speed_mm_s, columns))?;
+        let stored = store.problem(&problem(parameters, rubber, task, columns))?;
         Ok(Self {
             parameters,
             rubber,
@@ -316,9 +316,14 @@ impl<'a> MicroCurve<'a> {
             None => {
                 let speed = self.task.speed_mm_s / 1e3;
                 let profile = RigidProfile::from_waves(&self.task.micro, self.period);
-                let options = BlockOptions::new(self.columns);
-                SteadyContact::new(self.rubber, Rheology::NeoHookean, speed, profile, options)?
-                    .interruptible(self.interrupted)
+                let options = BlockOptions::of_profile(self.columns, &profile);
+                let law = Rheology::NeoHookean;
+                let block = SteadyContact::new(self.rubber, law, speed, profile, options)?;
+                let block = match self.parameters.contact_length_mm {
+                    Some(length) => block.lasting(length / 1e3),
+                    None => block,
+                };
+                block.interruptible(self.interrupted)
             }
         };
         Ok(self.block.insert(block))
@@ -326,28 +331,31 @@ impl<'a> MicroCurve<'a> {
 
     /// Digest of all that determines a sample.
     fn key(&self, pressure: f64) -> Digest {
-        let Task { micro, speed_mm_s, .. } = self.task;
-        let mut all = problem_parts(self.rubber, micro, *speed_mm_s, self.columns);
+        let mut all = problem_parts(self.parameters, self.rubber, self.task, self.columns);
         all["pressure"] = json!(pressure);
         Digest::of_value(&all)
     }
 }
 
 /// Digest of what all samples of a microscale have in common.
-pub(super) fn problem(rubber: &Rubber, micro: &[Wave], speed_mm_s: f64, columns: usize) -> Digest {
-    Digest::of_value(&problem_parts(rubber, micro, speed_mm_s, columns))
+pub(super) fn problem(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Digest {
+    Digest::of_value(&problem_parts(parameters, rubber, task, columns))
 }
 
-fn problem_parts(rubber: &Rubber, micro: &[Wave], speed_mm_s: f64, columns: usize) -> Value {
-    json!({
+fn problem_parts(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Value {
+    let mut parts = json!({
         "solver": ["micro", SOLVER_REVISION],
         "equilibrium_modulus": rubber.equilibrium_modulus,
         "branches": rubber.branches,
         "poisson_ratio": rubber.poisson_ratio,
-        "profile": micro,
-        "speed_mm_s": speed_mm_s,
+        "profile": task.micro,
+        "speed_mm_s": task.speed_mm_s,
         "columns": columns,
-    })
+    });
+    if let Some(length) = parameters.contact_length_mm {
+        parts["contact_length_mm"] = json!(length);
+    }
+    parts
 }
 
 impl SampleRow {

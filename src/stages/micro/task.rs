@@ -3,6 +3,8 @@
 use super::curve::{MicroCurve, problem};
 use super::{Micro, TaskResult, columns, monotony, same_waves};
 use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::fem::cost::MeshCost;
+use crate::fem::profile::RigidProfile;
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{LocalLaw, SoftContact};
 use crate::numerics::Interrupt;
@@ -111,7 +113,7 @@ impl PressedSurface {
 impl Task {
     /// Digest of microscale, rubber, speed and mesh: under which the samples are kept.
     pub fn problem(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
-        problem(rubber, &self.micro, self.speed_mm_s, self.columns(parameters))
+        problem(parameters, rubber, self, self.columns(parameters))
     }
 
     /// Digest of all that determines which samples the task asks for.
@@ -134,6 +136,13 @@ impl Task {
         let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
         let shortest = self.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
         columns(parameters.columns_per_shortest_wavelength, period, shortest)
+    }
+
+    /// What its samples cost.
+    pub fn cost(&self, parameters: &Micro) -> MeshCost {
+        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let profile = RigidProfile::from_waves(&self.micro, period);
+        MeshCost::new(&profile, self.columns(parameters), parameters.estimate_mesh_error)
     }
 
     /// Whether a packed store has all samples of the task.

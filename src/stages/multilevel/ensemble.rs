@@ -61,7 +61,7 @@ impl<'a> Ensemble<'a> {
         let [begin, end] = [parameters.first_realisations, parameters.most_realisations]
             .map(|count| if negligible.is_some() { 0 } else { count as usize });
         let own = |row: &&_| is_own(row, first.waves, speed_mm_s);
-        let columns = fem::columns(&parameters.fem(), first);
+        let mesh = fem::cost(&parameters.fem(), first);
         let solves = results.solves.iter().filter(own);
         Self {
             speed_mm_s,
@@ -71,7 +71,7 @@ impl<'a> Ensemble<'a> {
             full: Vec::new(),
             wanted: Shares { half_space: solved, pairs: begin.min(solved) },
             most: Shares { half_space: all, pairs: end.min(all) },
-            costs: Costs::new(solves, solved, columns, &parameters.fem(), bem),
+            costs: Costs::new(solves, solved, mesh, &parameters.fem(), bem),
             tolerance: bem.average_tolerance,
             negligible,
             area_fractions: &bem.area_fractions,

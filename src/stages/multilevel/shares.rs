@@ -1,18 +1,13 @@
 //! How many realisations of each model give the wanted interval for the least work.
 
 use super::estimate::Spread;
+use crate::fem::cost::{MeshCost, solves_of_curve};
 use crate::stages::bem::{Bem, SolveRow};
 use crate::stages::fem::Fem;
 
-/// Seconds for a grid point and an active-set iteration of the half-space, as in a sweep. This and the next
-/// constants are part of the results: to change them asks for another revision of the stage.
+/// Seconds for a grid point and an active-set iteration of the half-space, as in a sweep. It is part of the
+/// results: to change it asks for another revision of the stage.
 const SECONDS_PER_POINT_AND_ITERATION: f64 = 4.4e-7;
-/// Seconds for a pressure with finite elements on 128 columns; they grow with a power of the columns.
-const SECONDS_PER_SOLVE: f64 = 0.5;
-const REFERENCE_COLUMNS: f64 = 128.0;
-const GROWTH: f64 = 1.15;
-/// Half the columns too cost two fifths more.
-const WITH_MESH_ERROR: f64 = 1.4;
 /// The numbers are at most multiplied by this at once: they follow from spreads that are not well
 /// known yet.
 const MOST_GROWTH: usize = 4;
@@ -41,29 +36,21 @@ pub(super) struct Costs {
 }
 
 impl Costs {
-    /// From the solves of the half-space, of so many curves, and the columns of the mesh.
+    /// From the solves of the half-space, of so many curves, and the mesh of a contact at finite deformation.
     pub fn new<'a>(
         solves: impl Iterator<Item = &'a SolveRow>,
         curves: usize,
-        columns: usize,
+        mesh: MeshCost,
         fem: &Fem,
         bem: &Bem,
     ) -> Self {
         let work: f64 = solves.map(|row| (row.iterations * row.grid_points) as f64).sum();
-        let meshes = if fem.estimate_mesh_error { WITH_MESH_ERROR } else { 1.0 };
-        let one = SECONDS_PER_SOLVE * (columns as f64 / REFERENCE_COLUMNS).powf(GROWTH);
         let pressures = solves_of_curve(&bem.area_fractions, fem.pressure_ratio);
         Self {
             half_space: SECONDS_PER_POINT_AND_ITERATION * work / curves.max(1) as f64,
-            pair: meshes * one * pressures,
+            pair: mesh.seconds_of_solves(pressures),
         }
     }
-}
-
-/// Pressures of a finite-element curve over these areas, about: area grows as pressure does.
-pub(crate) fn solves_of_curve(area_fractions: &[f64], pressure_ratio: f64) -> f64 {
-    let range = area_fractions[area_fractions.len() - 1] / area_fractions[0];
-    range.ln() / pressure_ratio.ln() + 2.0
 }
 
 /// What is asked for at one contact area.

@@ -15,7 +15,7 @@ use serde_json::json;
 
 /// Revision of the contact solvers: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 5;
+const SOLVER_REVISION: u32 = 6;
 
 /// A contact model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -199,7 +199,8 @@ impl Problem {
         let speed = self.speed_mm_s / 1e3;
         let set_up = || {
             let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
-            SteadyContact::new(rubber, rheology, speed, profile, BlockOptions::new(self.columns))
+            let options = BlockOptions::of_profile(self.columns, &profile);
+            SteadyContact::new(rubber, rheology, speed, profile, options)
                 .map(|contact| contact.interruptible(interrupt))
         };
         // The contact at the pressure before, if it has a solution.
