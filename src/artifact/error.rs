@@ -21,8 +21,9 @@ pub enum ArtifactError {
     },
     /// The file cannot be decoded at all.
     #[error(
-        "{} is no readable {format} ({reason}); it is truncated, damaged or of another kind: delete it and run the stage again",
-        .path.display()
+        "{} is no readable {format} ({reason}); it is truncated, damaged or of another kind: delete {} and run the stage again",
+        .path.display(),
+        what_to_delete(.path)
     )]
     Unreadable {
         /// The file.
@@ -300,5 +301,13 @@ fn of_io(action: &str, cause: &io::Error) -> ErrorKind {
         Os::AlreadyExists | Os::NotADirectory | Os::IsADirectory => ErrorKind::Input,
         Os::NotFound | Os::PermissionDenied if reads => ErrorKind::Input,
         _ => ErrorKind::Failure,
+    }
+}
+
+/// A stage without its manifest is a folder that nobody knows who wrote, so that both go.
+fn what_to_delete(path: &std::path::Path) -> &'static str {
+    match path.file_name() {
+        Some(name) if name == super::Manifest::FILE => "its folder",
+        _ => "it",
     }
 }

@@ -7,7 +7,8 @@ use clap::Args;
 
 use super::CliError;
 use super::inspect::{ScanOptions, read_instrument};
-use super::output::{print, write_file};
+use super::output::{note, print, refuse_existing, write_file};
+use super::solve::refuse_to_overwrite;
 use crate::scans::Described;
 use crate::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
 use crate::surface::RawScan;
@@ -49,17 +50,19 @@ pub(super) struct Convert {
 
 impl Convert {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        refuse_to_overwrite(Some(&self.to), "--to", &[Some(&self.file)])?;
+        refuse_existing(Some(&self.to), self.force)?;
         let extension = self.to.extension().unwrap_or_default().to_ascii_lowercase();
         match extension.to_str() {
             Some("x3p") => {
-                let bytes = write_x3p(&self.on_grid()?).map_err(CliError::failure)?;
+                let bytes = write_x3p(&self.on_grid(quiet)?).map_err(CliError::failure)?;
                 write_file(&self.to, self.force, |out| out.write_all(&bytes))?;
             }
             Some("sdf") => {
-                let text = write_sdf(&self.on_grid()?);
+                let text = write_sdf(&self.on_grid(quiet)?);
                 write_file(&self.to, self.force, |out| out.write_all(text.as_bytes()))?;
             }
-            Some("csv") => write_file(&self.to, self.force, self.csv()?)?,
+            Some("csv") => write_file(&self.to, self.force, self.csv(quiet)?)?,
             _ => {
                 let name = self.to.display();
                 return Err(CliError::input(format!(
@@ -83,7 +86,7 @@ impl Convert {
         Ok(native)
     }
 
-    fn read(&self) -> Result<Described, CliError> {
+    fn read(&self, quiet: bool) -> Result<Described, CliError> {
         if let Some(scan) = self.native()? {
             return Ok(Described::Map(scan));
         }
@@ -93,19 +96,26 @@ impl Convert {
                 self.file.display()
             ))
         })?;
-        self.scan.read(&self.file)
+        let read = self.scan.read(&self.file)?;
+        for contradiction in self.scan.contradictions(&self.file)? {
+            note(quiet, format_args!("warning: {contradiction}; the options count"));
+        }
+        Ok(read)
     }
 
-    fn on_grid(&self) -> Result<ScanFile, CliError> {
-        match self.read()? {
+    fn on_grid(&self, quiet: bool) -> Result<ScanFile, CliError> {
+        match self.read(quiet)? {
             Described::Map(scan) => Ok(scan),
             Described::Line(scan) => equally_spaced(&self.file, scan),
         }
     }
 
     /// What writes the CSV file.
-    fn csv(&self) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()> + use<>, CliError> {
-        let read = self.read()?;
+    fn csv(
+        &self,
+        quiet: bool,
+    ) -> Result<impl FnOnce(&mut dyn Write) -> io::Result<()> + use<>, CliError> {
+        let read = self.read(quiet)?;
         Ok(move |out: &mut dyn Write| match read {
             Described::Map(scan) => write_grid(&scan, out),
             Described::Line(scan) => write_points(&scan.positions, &scan.heights, out),

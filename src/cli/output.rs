@@ -76,6 +76,9 @@ pub(super) fn write_file(
     overwrite: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), CliError> {
+    if let Some(folder) = missing_folder(path) {
+        return Err(no_such_folder(path, folder));
+    }
     let failed = |error: io::Error| match error.kind() {
         io::ErrorKind::AlreadyExists => already_exists(path),
         _ => CliError::failure(format!("cannot write {}: {error}", path.display())),
@@ -98,17 +101,34 @@ pub(super) fn write_file(
     }
 }
 
-/// Fails for a file that is there, unless it may be overwritten: before long work, of which it is to be the end.
+/// The folder of a file that is to be written, if it is not there.
+fn missing_folder(path: &Path) -> Option<&Path> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty())?;
+    (!folder.exists()).then_some(folder)
+}
+
+fn no_such_folder(path: &Path, folder: &Path) -> CliError {
+    CliError::input(format!(
+        "cannot write {}: there is no folder {}; make it first",
+        path.display(),
+        folder.display()
+    ))
+}
+
+/// Fails for a file that is there, unless it may be overwritten, and for one in a folder that is not there: before long work,
+/// of which it is to be the end.
 ///
 /// # Errors
 /// [`CliError::Input`].
 pub(super) fn refuse_existing(path: Option<&Path>, overwrite: bool) -> Result<(), CliError> {
-    match path {
-        Some(path) if !overwrite && (path.is_file() || path.is_symlink() && !path.exists()) => {
-            Err(already_exists(path))
-        }
-        _ => Ok(()),
+    let Some(path) = path else { return Ok(()) };
+    if let Some(folder) = missing_folder(path) {
+        return Err(no_such_folder(path, folder));
     }
+    if !overwrite && (path.is_file() || path.is_symlink() && !path.exists()) {
+        return Err(already_exists(path));
+    }
+    Ok(())
 }
 
 /// The refusal to overwrite a file.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use super::output::{already_exists, json, note, print, write_file};
+use super::output::{already_exists, json, note, print, refuse_existing, write_file};
 use super::{CliError, values};
 use crate::report::rubber_figure;
 use crate::rubber::fit::{
@@ -152,6 +152,8 @@ impl Rubber {
 impl Fit {
     fn run(&self, quiet: bool) -> Result<(), CliError> {
         self.check()?;
+        refuse_existing(Some(&self.to), self.force)?;
+        refuse_existing(self.plot.as_deref(), self.force)?;
         let factor = self.kind.factor(self.poisson_ratio);
         let table = read_sweeps(&self.sweep, &self.table(), factor)?;
         let doubts = doubts(&table, self.kind);

@@ -11,7 +11,7 @@ use super::last_run::LastRun;
 use super::output::{json, note, print};
 use super::progress::{Bar, Progress};
 use super::recipe_options::{RecipeOptions, TakeOver};
-use super::sweep::{claim_sweep, note_recipes, tell};
+use super::sweep::{claim_sweep, note_recipes, tell, warnings};
 use super::{CliError, threads, values};
 use crate::artifact::{Manifest, RunFolder, RunView};
 use crate::files::name::path_text;
@@ -80,6 +80,7 @@ impl Run {
         let (recipe, last_run) = self.recipe.recipe_and_origin()?;
         threads::start(self.threads)?;
         let out = self.recipe.out();
+        refuse_among_scans(&recipe, &out)?;
         let selection = Selection { only: self.only, from: self.from, force: self.force };
         if recipe.sweep.is_some() {
             return self.run_cases(&recipe, &last_run, &out, quiet);
@@ -156,17 +157,25 @@ impl Run {
         let recipe = recipe.clone().absolute().map_err(CliError::failure)?;
         let out = &std::path::absolute(out).map_err(CliError::failure)?;
         claim_sweep(&recipe, last_run, out, self.folder.take_over)?;
-        let manifest = sweep::run(&recipe, out, watch, &|case, event| tell(quiet, case, &event));
+        let manifest = sweep::run(&recipe, out, watch, &|_, _| ());
         bar.finish();
         let manifest = manifest?;
         let cases = recipe.cases()?;
-        note_recipes(&sweep::Layout::new(out), &cases)?;
+        let layout = sweep::Layout::new(out);
+        note_recipes(&layout, &cases)?;
         if self.json {
-            let seconds = manifest.seconds;
-            return print(&json(
-                &serde_json::json!({ "out": path_text(out), "cases": cases.len(), "seconds": seconds }),
-            )?);
+            let told = warnings(&layout, &cases)?.into_iter();
+            let told: Vec<_> = told
+                .map(|(case, stage, warning)| serde_json::json!({ "case": case, "stage": stage, "warning": warning }))
+                .collect();
+            return print(&json(&serde_json::json!({
+                "out": path_text(out),
+                "cases": cases.len(),
+                "seconds": manifest.seconds,
+                "warnings": told,
+            }))?);
         }
+        tell(quiet, &layout, &cases)?;
         let (count, tables) = (cases.len(), out.join(sweep::STAGE));
         note(
             quiet,
@@ -177,6 +186,25 @@ impl Run {
             ),
         );
         Ok(())
+    }
+}
+
+/// Refuses a run folder that is a folder of scans: its files would be taken for scans by the next run.
+fn refuse_among_scans(recipe: &Recipe, out: &Path) -> Result<(), CliError> {
+    let ingest = recipe.ingest.iter().flat_map(|ingest| &ingest.scans);
+    let specimens = recipe.sweep.iter().flat_map(|sweep| &sweep.specimens);
+    let scans = ingest.chain(specimens.flat_map(|specimen| &specimen.scans));
+    let Ok(real) = std::fs::canonicalize(out) else { return Ok(()) };
+    match scans
+        .filter(|scans| scans.is_dir())
+        .find(|scans| scans.canonicalize().is_ok_and(|s| s == real))
+    {
+        None => Ok(()),
+        Some(scans) => Err(CliError::input(format!(
+            "--out {}: this is the folder {} of the scans, and results in it would be taken for scans; give another",
+            out.display(),
+            scans.display()
+        ))),
     }
 }
 

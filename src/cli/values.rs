@@ -46,6 +46,22 @@ pub(super) fn count<T: FromStr>(text: &str) -> Result<T, String> {
     }
 }
 
+/// A whole number of 1 or more.
+pub(super) fn one_or_more<T: FromStr + Default + PartialEq>(text: &str) -> Result<T, String> {
+    match count::<T>(text)? {
+        none if none == T::default() => Err("0 is none; give 1 or more".into()),
+        number => Ok(number),
+    }
+}
+
+/// One line of text, as it stands in a script.
+pub(super) fn line(text: &str) -> Result<String, String> {
+    match text.chars().any(char::is_control) || text.trim().is_empty() {
+        true => Err("it must be one line of text, which stands in the job script".into()),
+        false => Ok(text.to_owned()),
+    }
+}
+
 /// The number of a channel, of which the first is 1.
 pub(super) fn channel(text: &str) -> Result<usize, String> {
     match count(text)? {

@@ -101,7 +101,8 @@ pub enum Violation {
     /// A recipe of several cases where one is wanted.
     #[error(
         "the recipe has a section [sweep] of {cases} cases: `asperity run` runs them all, `asperity \
-         sweep` spreads them over machines; a finished case has a recipe of its own in its folder"
+         sweep` spreads them over machines; a finished case CASE has a recipe of its own: \
+         CASE/recipe.toml with --out CASE"
     )]
     SeveralCases {
         /// Their number.

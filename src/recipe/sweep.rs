@@ -72,13 +72,13 @@ impl Sweep {
     fn check(&self) -> Result<(), Violation> {
         let names: Vec<&str> =
             self.specimens.iter().map(|specimen| specimen.name.as_str()).collect();
-        let named = "names of letters, digits, `.`, `_` and `-`, each once: they become folders";
-        demand(are_names(&names), "sweep.specimens", &names, named)?;
+        let named = "names of letters, digits, `.`, `_` and `-`, 100 at most, each once: they become folders";
+        demand(are_names(&names), "sweep.specimens.name", &names, named)?;
         let scans = self.specimens.iter().all(|specimen| !specimen.scans.is_empty());
         demand(scans, "sweep.specimens", &names, "specimens with one scan or more each")?;
         let rubbers: Vec<String> = self.rubbers.iter().map(|path| stem(path)).collect();
         let rubbers: Vec<&str> = rubbers.iter().map(String::as_str).collect();
-        let named = "file names of letters, digits, `.`, `_` and `-`, each once: they name tables and folders";
+        let named = "file names of letters, digits, `.`, `_` and `-`, 100 at most, each once: they name tables and folders";
         demand(are_names(&rubbers), "sweep.rubbers", &rubbers, named)?;
         let temperatures = &self.temperatures_c;
         let valid = temperatures.iter().all(|t| t.is_finite()) && once(temperatures);
@@ -218,10 +218,14 @@ fn once<T: PartialEq>(values: &[T]) -> bool {
 }
 
 /// Whether all are fit for folders, also on file systems that do not tell `A` from `a`.
+/// Letters of a name that becomes a folder: file systems take 255 bytes.
+const LONGEST_NAME: usize = 100;
+
 fn are_names(names: &[&str]) -> bool {
     let fit = |name: &&str| {
         !name.is_empty()
             && !name.starts_with('.')
+            && name.chars().count() <= LONGEST_NAME
             && name.chars().all(|c| c.is_alphanumeric() || "._-".contains(c))
     };
     let distinct: BTreeSet<String> = names.iter().map(|name| name.to_lowercase()).collect();

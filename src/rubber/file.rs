@@ -63,8 +63,18 @@ pub enum RubberFileError {
         /// Whether it is a recipe.
         is_recipe: bool,
     },
+    /// A number that no rubber has, as it stands in the file.
+    #[error("{}: {key} is {value}, it must be positive and finite", .path.display())]
+    Number {
+        /// The file.
+        path: PathBuf,
+        /// Its key, and the branch.
+        key: String,
+        /// Its value, in the unit of the key.
+        value: f64,
+    },
     /// The numbers are not those of a rubber.
-    #[error("{} does not describe a rubber (values below in Pa and s)", .path.display())]
+    #[error("{} does not describe a rubber", .path.display())]
     Invalid {
         /// The file.
         path: PathBuf,
@@ -107,6 +117,7 @@ impl HasKind for RubberFileError {
         match self {
             Self::Unreadable { .. }
             | Self::Syntax { .. }
+            | Self::Number { .. }
             | Self::Invalid { .. }
             | Self::Temperature { .. }
             | Self::Laws { .. }
@@ -227,6 +238,22 @@ struct BranchEntry {
     relaxation_time_s: f64,
 }
 
+impl RubberFile {
+    /// The first modulus or relaxation time that is none, with its key.
+    fn bad_number(&self) -> Option<(String, f64)> {
+        let usable = |value: f64| value > 0.0 && (PA_PER_MPA * value).is_finite();
+        let equilibrium = ("equilibrium_modulus_mpa".to_owned(), self.equilibrium_modulus_mpa);
+        let branches = self.branches.iter().enumerate().flat_map(|(k, branch)| {
+            let named = |key: &str| format!("{key} of branch {}", k + 1);
+            [
+                (named("modulus_mpa"), branch.modulus_mpa),
+                (named("relaxation_time_s"), branch.relaxation_time_s),
+            ]
+        });
+        std::iter::once(equilibrium).chain(branches).find(|(_, value)| !usable(*value))
+    }
+}
+
 impl From<RubberFile> for Rubber {
     fn from(file: RubberFile) -> Self {
         let branch = |entry: &BranchEntry| MaxwellBranch {
@@ -301,6 +328,9 @@ pub fn parse_rubber_data(path: &Path, text: &str) -> Result<RubberData, RubberFi
     })?;
     let measured = file.measured_hz.map(|range| measured_range(path, range)).transpose()?;
     let temperature = file.temperature.as_ref().map(|entry| dependence(path, entry)).transpose()?;
+    if let Some((key, value)) = file.bad_number() {
+        return Err(RubberFileError::Number { path: path.to_path_buf(), key, value });
+    }
     let rubber = Rubber::from(file);
     rubber
         .validate()
@@ -395,9 +425,9 @@ mod tests {
     #[test]
     fn numbers_of_no_rubber_are_named() {
         let negative = failure(&VALID.replace("= 2.0", "= -2.0"));
-        assert!(negative.contains("the modulus of branch 1 is -2000000"), "{negative}");
+        assert!(negative.contains("modulus_mpa of branch 1 is -2,"), "{negative}");
         let nan = failure(&VALID.replace("= 1e-3", "= nan"));
-        assert!(nan.contains("the relaxation time of branch 1 is NaN"), "{nan}");
+        assert!(nan.contains("relaxation_time_s of branch 1 is NaN"), "{nan}");
         let poisson = failure(&VALID.replace("= 0.5", "= 0.6"));
         assert!(poisson.contains("poisson_ratio is 0.6"), "{poisson}");
     }

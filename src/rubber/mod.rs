@@ -20,6 +20,6 @@ pub use finite_strain::{FiniteStrainRubber, Rheology};
 pub use frequencies::FrequencyRange;
 pub use maxwell::{MaxwellBranch, Rubber, RubberError};
 pub use temperature::{
-    GAS_CONSTANT, ShiftLaw, TemperatureDependence, TemperatureError, ZERO_CELSIUS,
+    GAS_CONSTANT, HOTTEST_C, ShiftLaw, TemperatureDependence, TemperatureError, ZERO_CELSIUS,
 };
 pub use vertical::VerticalShift;

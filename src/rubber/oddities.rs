@@ -53,6 +53,15 @@ impl RubberData {
                 rubber.branches[k].relaxation_time
             ));
         }
+        let branches = &rubber.branches;
+        let twice = (1..branches.len()).find(|k| branches[..*k].contains(&branches[*k]));
+        if let Some(k) = twice {
+            oddities.push(format!(
+                "rubber {name}: branch {} stands there twice, with the same modulus and relaxation time; leave one out if \
+                 it is a copy",
+                k + 1
+            ));
+        }
         oddities
     }
 }

@@ -10,6 +10,8 @@ use serde::Serialize;
 pub const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 /// 0 °C in K.
 pub const ZERO_CELSIUS: f64 = 273.15;
+/// No rubber is measured or used hotter throughout, in °C; but in K it would be.
+pub const HOTTEST_C: f64 = 150.0;
 
 /// How the shift factor depends on temperature; 1 at the reference temperature T_r.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -229,16 +231,31 @@ impl TemperatureDependence {
         Self { reference_c, law, vertical, ..*self }
     }
 
-    /// A warning where the reference temperature lies outside those that the law was fitted to.
+    /// A warning where the reference temperature lies outside those that the law was fitted to, or seems to be in K.
     pub fn extrapolation(&self) -> Option<String> {
-        let [lowest, highest] = self.measured_c?;
         let temperature_c = self.reference_c;
-        (!(lowest..=highest).contains(&temperature_c)).then(|| {
-            format!(
-                "{temperature_c} °C is outside the {lowest} to {highest} °C at which the rubber was measured: \
-                 its shift factor is extrapolated"
-            )
-        })
+        let outside =
+            self.measured_c.filter(|[low, high]| !(*low..=*high).contains(&temperature_c));
+        let in_kelvin = || {
+            let celsius = temperature_c - ZERO_CELSIUS;
+            format!("is it in K? Then write {celsius:.2}")
+        };
+        match outside {
+            Some([lowest, highest]) => {
+                let mut warning = format!(
+                    "{temperature_c} °C is outside the {lowest} to {highest} °C at which the rubber was measured: \
+                     its shift factor is extrapolated"
+                );
+                if temperature_c > HOTTEST_C.max(highest) {
+                    warning = format!("{warning}; {}", in_kelvin());
+                }
+                Some(warning)
+            }
+            None if self.measured_c.is_none() && temperature_c > HOTTEST_C => {
+                Some(format!("{temperature_c} °C is hotter than rubber is used: {}", in_kelvin()))
+            }
+            None => None,
+        }
     }
 }
 

@@ -232,6 +232,15 @@ impl TextFormat {
             _ => {}
         }
         self.validate_map()?;
+        let columns = [&self.x_column, &self.y_column, &Some(self.z_column.clone())];
+        for (i, column) in columns.iter().enumerate() {
+            if let Some(column) = column
+                && columns[..i].iter().any(|other| other.as_ref() == Some(column))
+            {
+                let key = if i == 1 { "y_column" } else { "z_column" };
+                return Err(description(key, "is the column of other positions; each has its own"));
+            }
+        }
         for (key, column) in [
             ("x_column", self.x_column.as_ref()),
             ("y_column", self.y_column.as_ref()),

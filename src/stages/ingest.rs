@@ -270,7 +270,13 @@ fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
     for entry in std::fs::read_dir(path).map_err(io)? {
         let entry = entry.map_err(io)?;
         let hidden = entry.file_name().to_string_lossy().starts_with('.');
-        if !hidden && entry.path().is_file() {
+        if hidden {
+            continue;
+        }
+        // A link to a drive that is not there is a scan that would be missed in silence.
+        let found = std::fs::metadata(entry.path())
+            .map_err(|source| StageError::ScanIo { path: entry.path(), source })?;
+        if found.is_file() {
             files.push(entry.path());
         }
     }
@@ -310,6 +316,8 @@ struct ReadFile<T> {
     is_erd: bool,
     /// A height that seems to stand for missing ones, in words.
     repeated: Option<String>,
+    /// A stretch on which the sensor seems to have stood still, in words.
+    stuck: Option<String>,
 }
 
 /// Reads and conditions the scan files and writes the results; returns warnings.
@@ -419,6 +427,7 @@ fn read_scans(
     let condition = |scan| Ok(condition(scan, &ingest.conditioning)?);
     Ok(ReadFile {
         repeated: scans.iter().find_map(|scan| warnings::repeated(scan, Some(format))),
+        stuck: scans.iter().find_map(warnings::stuck),
         scans: scans.iter().map(condition).collect::<Result<_, StageError>>()?,
         is_text: true,
         contradictions,
@@ -468,6 +477,7 @@ fn read_instrument(
         channels: None,
         is_erd: Family::detect(source.start()) == Some(Family::Erd),
         repeated: None,
+        stuck: None,
     };
     let Some(scan) = open_channel(source, ingest.erd_channel)? else { return Ok(read) };
     let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
@@ -479,6 +489,9 @@ fn read_instrument(
         }
         if read.repeated.is_none() {
             read.repeated = warnings::repeated(&line, None);
+        }
+        if read.stuck.is_none() {
+            read.stuck = warnings::stuck(&line);
         }
         read.scans.push(condition(&line, &ingest.conditioning).map_err(Box::new)?);
         Ok::<(), Failure>(())

@@ -80,7 +80,11 @@ pub enum SineFitError {
         waves: usize,
     },
     /// No logarithm, or no lag.
-    #[error("correlation {value} m2 at lag {lag} m; both must be positive, leave the lag out")]
+    #[error(
+        "the height-difference correlation is {value} m2 at a lag of {:.6} mm, and both must be positive: do the scans have any \
+         roughness there? look at the columns and units of x and z",
+        .lag * 1e3
+    )]
     NotPositive {
         /// The lag in metres.
         lag: f64,
@@ -120,10 +124,10 @@ pub enum SineFitError {
 impl HasKind for SineFitError {
     fn kind(&self) -> ErrorKind {
         match self {
-            Self::TooFewLags { .. } | Self::Wavelength { .. } => ErrorKind::Input,
-            Self::NotPositive { .. } | Self::NotConverged { .. } | Self::NotOptimal { .. } => {
-                ErrorKind::Failure
+            Self::TooFewLags { .. } | Self::Wavelength { .. } | Self::NotPositive { .. } => {
+                ErrorKind::Input
             }
+            Self::NotConverged { .. } | Self::NotOptimal { .. } => ErrorKind::Failure,
         }
     }
 }

@@ -281,7 +281,7 @@ fn exports_are_complete_or_refused() {
     assert!(export("out --format csv --speed 11").error(2).contains("no table"));
     assert!(export("out --format csv").error(2).contains("there are 2 tables"));
     assert!(export("out --format parquet").error(2).contains("--to"));
-    let message = export("out --format markdown --to none/friction.md").error(1);
+    let message = export("out --format markdown --to none/friction.md").error(2);
     assert!(message.contains("none/friction.md"), "{message}");
 
     let csv = export("out --format csv --speed 50").result();

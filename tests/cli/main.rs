@@ -13,6 +13,7 @@ mod laboratory;
 mod mistakes;
 mod names;
 mod odd_files;
+mod oversights;
 mod report;
 mod rubber;
 mod rubber_sweeps;

@@ -244,13 +244,13 @@ fn a_bad_rubber_is_named_by_file_line_and_key() {
 }
 
 #[test]
-fn what_cannot_be_solved_or_written_has_exit_code_1() {
+fn what_cannot_be_solved_has_exit_code_1_and_a_missing_folder_2() {
     // Heights of 1e297 m leave no digit for the pressure, and one point of any grid to carry it.
     let huge = "solve bem --wave 1:1e300 --speed 10 --pressure 1 --json";
     let refined = asperity(huge).error(1);
     assert!(refined.contains("no three grids resolve the contact"), "{refined}");
     let fixed = asperity(&format!("{huge} --points 64")).error(1);
     assert!(fixed.contains("did not converge"), "{fixed}");
-    let folder = asperity(&format!("{TABLE_5_3} --fields no/such/folder/fields.csv")).error(1);
+    let folder = asperity(&format!("{TABLE_5_3} --fields no/such/folder/fields.csv")).error(2);
     assert!(folder.contains("cannot write no/such/folder/fields.csv"), "{folder}");
 }

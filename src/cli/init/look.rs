@@ -139,7 +139,14 @@ pub(super) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
             let file = entry.map_err(failed)?.path();
             let hidden =
                 file.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-            if file.is_file() && !hidden {
+            if hidden {
+                continue;
+            }
+            // A link to a drive that is not there is a scan that would be missed in silence.
+            let found = fs::metadata(&file).map_err(|error| {
+                CliError::input(format!("cannot read {}: {error}", file.display()))
+            })?;
+            if found.is_file() {
                 within.push(file);
             }
         }

@@ -1,5 +1,6 @@
 //! Text scans, described by options.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,6 +10,7 @@ use super::foreign;
 use crate::cli::output::{aligned, significant};
 use crate::cli::{CliError, values};
 use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
 use crate::scans::{Described, TextFormat, read_bytes, read_described};
 use crate::surface::RawScan;
@@ -17,6 +19,9 @@ use crate::surface::resample::place_on_grid;
 use statrs::statistics::{Data, OrderStatistics};
 
 const FIRST_POINTS: usize = 5;
+
+/// Enough for the names of the columns and some points.
+const START: u64 = 1 << 16;
 
 /// How a text scan is to be read; the keys `[ingest.format]` of a recipe as options.
 #[derive(Debug, Args)]
@@ -35,7 +40,7 @@ pub(in crate::cli) struct ScanOptions {
     #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
     x_unit: Option<LengthUnit>,
     /// Distance of neighbouring points in um, for a file of heights only, in place of --x-column.
-    #[arg(long, value_name = "UM", value_parser = values::positive)]
+    #[arg(long, value_name = "UM", value_parser = values::positive, allow_negative_numbers = true)]
     x_spacing_um: Option<f64>,
     /// Column of the positions across the lines of a height map, by name or number (the first is 1).
     #[arg(long, value_name = "COLUMN", value_parser = values::column)]
@@ -78,10 +83,10 @@ pub(in crate::cli) struct ScanOptions {
     #[arg(long, value_name = "LABEL", default_value = "utf-8")]
     encoding: String,
     /// Length in mm to leave out at the start of the track.
-    #[arg(long, value_name = "MM", default_value = "0", value_parser = values::finite)]
+    #[arg(long, value_name = "MM", default_value = "0", value_parser = values::finite, allow_negative_numbers = true)]
     cut_start_mm: f64,
     /// Length in mm to leave out at the end of the track.
-    #[arg(long, value_name = "MM", default_value = "0", value_parser = values::finite)]
+    #[arg(long, value_name = "MM", default_value = "0", value_parser = values::finite, allow_negative_numbers = true)]
     cut_end_mm: f64,
 }
 
@@ -159,10 +164,25 @@ impl ScanOptions {
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn summary(&self, path: &Path, scan: RawScan) -> Result<Scan, CliError> {
+        Ok(Scan { contradictions: self.contradictions(path)?, ..Scan::of(path, scan) })
+    }
+
+    /// Where the options contradict the names of the columns.
+    ///
+    /// # Errors
+    /// [`CliError::Input`].
+    pub(in crate::cli) fn contradictions(&self, path: &Path) -> Result<Vec<String>, CliError> {
         let format = self.format().map_err(|needed| foreign(path, &format!("needs {needed}")))?;
-        let shape = TextShape::of(&read_bytes(path).map_err(CliError::input)?);
-        let contradictions = shape.map(|shape| shape.contradictions(&format)).unwrap_or_default();
-        Ok(Scan { contradictions, ..Scan::of(path, scan) })
+        let failed = |error| CliError::input(format!("{} cannot be read: {error}", path.display()));
+        let mut start = Vec::new();
+        let file = std::fs::File::open(path).map_err(failed)?;
+        file.take(START).read_to_end(&mut start).map_err(failed)?;
+        // The directory of a workbook is at its end.
+        if is_workbook(&start) {
+            start = read_bytes(path).map_err(CliError::input)?;
+        }
+        let shape = TextShape::of(&start);
+        Ok(shape.map(|shape| shape.contradictions(&format)).unwrap_or_default())
     }
 
     /// # Errors

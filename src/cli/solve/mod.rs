@@ -34,7 +34,7 @@ impl Solve {
 ///
 /// # Errors
 /// [`CliError::Input`] naming the option and the file.
-fn refuse_to_overwrite(
+pub(super) fn refuse_to_overwrite(
     output: Option<&Path>,
     option: &str,
     inputs: &[Option<&Path>],

@@ -48,13 +48,14 @@ fn parse_profile(text: &str, unit: LengthUnit) -> Result<Shape, Located> {
     let spacing = equal_spacing(&points)?;
     let heights: Vec<f64> = points.iter().map(|point| unit.metres(point.z)).collect();
     let repeats = heights.first() == heights.last();
+    let repeats = repeats.then(|| {
+        "the last height of the profile equals the first; if this is the end of the period, \
+         delete it: the period ends one spacing after the last point"
+            .into()
+    });
     Ok(Shape {
         period: unit.metres(spacing * points.len() as f64),
-        warning: repeats.then(|| {
-            "the last height of the profile equals the first; if this is the end of the period, \
-             delete it: the period ends one spacing after the last point"
-                .into()
-        }),
+        warning: repeats.or_else(|| cliff(&heights)),
         heights,
         waves: Vec::new(),
     })
@@ -82,6 +83,25 @@ fn parse_point(data: &str) -> Result<(f64, f64), String> {
         )),
     };
     Ok((number("x", x)?, number("z", z)?))
+}
+
+/// Steps of a profile from its last point to its first one, over the largest inside, from which on it is one that
+/// does not close.
+const CLIFF: f64 = 3.0;
+
+/// A warning for a profile that ends where it does not begin.
+fn cliff(heights: &[f64]) -> Option<String> {
+    let (first, last) = (heights.first()?, heights.last()?);
+    let inside = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    let closing = (first - last).abs();
+    (closing > CLIFF * inside).then(|| {
+        format!(
+            "the profile ends {:.6} mm from the height that it begins with, {:.0} times its largest step: as a period it has \
+             a cliff there; take the slope off, or cut it where it closes",
+            closing * 1e3,
+            closing / inside
+        )
+    })
 }
 
 /// The distance of neighbouring points, in the unit of the file.

@@ -8,8 +8,6 @@ use super::plan::describe;
 use super::submit::{SlurmOptions, submit};
 use super::{PlanPath, display, note_recipes, set_threads, tell, watched};
 use crate::artifact::Manifest;
-use crate::pipeline::Event;
-use crate::recipe::Case;
 use crate::sweep::{Cases, Layout, STAGE, SweepPlan, check, collect, plan, read_plan};
 use std::path::PathBuf;
 
@@ -70,8 +68,7 @@ impl Collect {
                 }
             }
             let of = if self.complete_cases { Cases::Complete } else { Cases::All };
-            let tell = |case: &Case, event: Event| tell(quiet, case, &event);
-            collect(&path, &planned, of, watch, &tell).map(Box::new).map(Outcome::Tables)
+            collect(&path, &planned, of, watch, &|_, _| ()).map(Box::new).map(Outcome::Tables)
         })?;
         let manifest = match outcome {
             Outcome::Next(path, next) => {
@@ -80,6 +77,7 @@ impl Collect {
             }
             Outcome::Tables(manifest) => manifest,
         };
+        tell(quiet, &layout, &cases)?;
         for warning in &manifest.warnings {
             note(quiet, format_args!("  warning: {warning}"));
         }

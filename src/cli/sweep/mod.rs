@@ -6,6 +6,7 @@ mod shard;
 mod status;
 mod submit;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -15,9 +16,9 @@ use super::last_run::LastRun;
 use super::output::note;
 use super::progress::Bar;
 use super::{CliError, threads};
-use crate::pipeline::Event;
+use crate::artifact::RunView;
 use crate::recipe::{Case, Recipe};
-use crate::stages::Watch;
+use crate::stages::{Stage, Watch};
 use crate::sweep::{Layout, RECIPE_FILE, SweepError};
 
 /// Spread the cases of a recipe over many machines: plan, submit or run shards, collect.
@@ -75,13 +76,41 @@ fn watched<T>(
     Ok(result?)
 }
 
-/// The warnings of the stages that a case computes, and its folder once it is done.
-pub(super) fn tell(quiet: bool, case: &Case, event: &Event) {
-    if let Event::Finished(stage, manifest) = event {
-        for warning in &manifest.warnings {
-            note(quiet, format_args!("  warning: {}, {stage}: {warning}", case.folder.display()));
+/// The warnings of all stages of the cases, those of shared surfaces once: `(where, stage, warning)`.
+///
+/// # Errors
+/// [`CliError`] for a manifest that cannot be read.
+pub(super) fn warnings(
+    layout: &Layout,
+    cases: &[Case],
+) -> Result<Vec<(String, Stage, String)>, CliError> {
+    let mut seen = BTreeSet::new();
+    let mut warnings = Vec::new();
+    for case in cases {
+        let folder = layout.case(case);
+        let view = RunView::of(&folder);
+        for stage in Stage::CHAIN {
+            // Links of several cases lead to one result.
+            let real = std::fs::canonicalize(folder.join(stage.name()));
+            let Some(manifest) = view.stage_manifest(stage.name())? else { continue };
+            if real.is_ok_and(|real| seen.insert(real)) {
+                let told = manifest.warnings.into_iter();
+                warnings.extend(told.map(|text| (case.folder.display().to_string(), stage, text)));
+            }
         }
     }
+    Ok(warnings)
+}
+
+/// Shows the warnings of all stages of the cases.
+///
+/// # Errors
+/// As [`warnings`].
+pub(super) fn tell(quiet: bool, layout: &Layout, cases: &[Case]) -> Result<(), CliError> {
+    for (case, stage, warning) in warnings(layout, cases)? {
+        note(quiet, format_args!("  warning: {case}, {stage}: {warning}"));
+    }
+    Ok(())
 }
 
 /// Makes a folder that of the sweep of a recipe, after a look at what is in it.

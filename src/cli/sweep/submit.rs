@@ -41,22 +41,22 @@ pub(in crate::cli) struct Submit {
 #[derive(Debug, Args)]
 pub(super) struct SlurmOptions {
     /// Cores of each element.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = values::count::<usize>)]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = values::one_or_more::<usize>)]
     cpus: usize,
     /// Partition.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = values::line)]
     partition: Option<String>,
     /// Account to be charged.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = values::line)]
     account: Option<String>,
     /// Minutes for each element, in place of three times the prediction.
-    #[arg(long, value_name = "MINUTES", value_parser = values::count::<u32>)]
+    #[arg(long, value_name = "MINUTES", value_parser = values::one_or_more::<u32>)]
     minutes: Option<u32>,
     /// Memory of each element in MB, in place of three times the prediction.
-    #[arg(long, value_name = "MB", value_parser = values::count::<u32>)]
+    #[arg(long, value_name = "MB", value_parser = values::one_or_more::<u32>)]
     megabytes: Option<u32>,
     /// A further option of sbatch, such as --sbatch=--constraint=avx2; may be given several times.
-    #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
+    #[arg(long, value_name = "OPTION", allow_hyphen_values = true, value_parser = values::line)]
     sbatch: Vec<String>,
 }
 

@@ -1,14 +1,13 @@
 //! What in measured sweeps looks like a mistake of units or columns, in words.
 
 use super::{ModulusKind, Sweep, SweepPoint, SweepTable};
+use crate::rubber::HOTTEST_C;
 use std::f64::consts::TAU;
 
 /// Stiffer than any rubber glass, some 3 GPa, by far; in Pa.
 const STIFFEST: f64 = 2e10;
 /// Softer than the stiffest sweep of any solid rubber; in Pa.
 const SOFTEST: f64 = 5e4;
-/// No rubber is measured hotter throughout, in °C; but in K it would be.
-const HOTTEST_C: f64 = 150.0;
 /// By how much a storage modulus may fall over a sweep, relative; it cannot but for scatter.
 const FALL: f64 = 0.2;
 

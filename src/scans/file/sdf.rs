@@ -283,11 +283,16 @@ fn height(word: &str, line: usize) -> Result<f64, FileProblem> {
 
 fn text_header(fields: &[(String, String, usize)]) -> Result<Header, FileProblem> {
     let find = |wanted: &'static str| {
-        fields
-            .iter()
-            .find(|(key, ..)| key.eq_ignore_ascii_case(wanted))
-            .map(|(_, value, line)| (value.as_str(), *line))
-            .ok_or_else(|| unexpected(Place::Line(1), "the header", "without it", wanted))
+        let mut all = fields.iter().filter(|(key, ..)| key.eq_ignore_ascii_case(wanted));
+        let (_, value, line) = all
+            .next()
+            .ok_or_else(|| unexpected(Place::Line(1), "the header", "without it", wanted))?;
+        if let Some((key, other, line)) = all.find(|(_, other, _)| other != value) {
+            let both = format!("{key} = {other} beside {value}");
+            let what = "a second value of a key of the header";
+            return Err(unexpected(Place::Line(*line), what, both, "one value"));
+        }
+        Ok((value.as_str(), *line))
     };
     fn value<T: std::str::FromStr>(
         (text, line): (&str, usize),

@@ -119,12 +119,26 @@ impl Profile {
             return Ok(());
         }
         let value: String = text.trim().chars().take(LONGEST_VALUE).collect();
-        match element {
-            "UNITS" => self.unit = value,
-            "NUMPOINTS" => self.points = value,
-            "SPACING" => self.spacing = value,
-            "DATA_TYPE" => self.kind = value,
-            _ => {
+        let field = match element {
+            "UNITS" => Some(&mut self.unit),
+            "NUMPOINTS" => Some(&mut self.points),
+            "SPACING" => Some(&mut self.spacing),
+            "DATA_TYPE" => Some(&mut self.kind),
+            _ => None,
+        };
+        match field {
+            Some(field) if !field.is_empty() && *field != value => {
+                let both = format!("{element} {value} beside {field}");
+                let what = "a second value of an element";
+                return Err(unexpected(
+                    Place::Element(element.to_owned()),
+                    what,
+                    both,
+                    "one value",
+                ));
+            }
+            Some(field) => *field = value,
+            None => {
                 let known = FIELDS.iter().find(|(name, _)| *name == element);
                 let is_new = |key: &str| self.instrument.iter().all(|(name, _)| name != key);
                 if let Some((_, key)) = known.filter(|(_, key)| is_new(key) && !value.is_empty()) {

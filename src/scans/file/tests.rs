@@ -177,6 +177,24 @@ fn a_text_sdf_is_read_and_its_faults_are_named() {
     contains_all(&changed("DataType = 5", "DataType = 9"), &["line 8", "0 to 7"]);
     contains_all(&changed("Xscale", "Xskale"), &["Xscale"]);
     contains_all(&changed("*\r\n1", "1"), &["`key = value` or `*`"]);
+    let again = |second: &str| text.replace("Yscale", &format!("Xscale = {second}\r\nYscale"));
+    contains_all(&error(again("4e-6").as_bytes()), &["line 6", "Xscale = 4e-6 beside 1e-6"]);
+    assert!(parse(again("1e-6").as_bytes()).is_ok());
+}
+
+#[test]
+fn a_wyko_header_states_one_wavelength_of_light() {
+    let text = "Wyko ASCII Data File Format\t0\t0\t1\nX Size\t2\t4\t2\nY Size\t2\t4\t2\n\
+                Pixel_size\t7\t4\t0.001\nWavelength\t7\t4\t530\nMult\t2\t2\t1\n\
+                RAW_DATA\t3\t16\t0\n0.1\t0.2\n0.3\t0.4\n";
+    assert!(parse(text.as_bytes()).is_ok());
+    let changed = |from: &str, to: &str| error(text.replace(from, to).as_bytes());
+    for (value, part) in [("0", "`0`"), ("-530", "`-530`"), ("1e12", "`1000000000000`")] {
+        contains_all(&changed("\t530", &format!("\t{value}")), &["line 5", part, "100 to 20000"]);
+    }
+    contains_all(&changed("Mult\t2\t2\t1", "Mult\t2\t2\t-1"), &["line 6", "a positive number"]);
+    let twice = changed("Mult", "Wavelength\t7\t4\t633\nMult");
+    contains_all(&twice, &["line 6", "Wavelength 633 beside 530"]);
 }
 
 #[test]

@@ -13,8 +13,12 @@ use super::{ScanFile, grid, spacing};
 use crate::scans::decode::lines;
 
 const SIGNATURE: &str = "Wyko ASCII Data File Format";
+/// Fields that heights and positions follow from.
+const DECIDING: [&str; 6] = ["X Size", "Y Size", "Pixel_size", "Wavelength", "Mult", "Aspect"];
 /// Names of arrays of heights.
 const HEIGHTS: [&str; 4] = ["RAW_DATA", "RAW DATA", "OPD", "SAMPLE_DATA"];
+/// Wavelengths in nm of any light that an interferometer uses.
+const LIGHT_NM: std::ops::RangeInclusive<f64> = 100.0..=20_000.0;
 /// Lines of names and values that are kept; more than any file has.
 const MOST_FIELDS: usize = 1000;
 
@@ -37,8 +41,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
     } else {
         let wavelength = file.number("Wavelength")?;
         let divisor = file.optional("Mult")?.map_or(1.0, |(_, value)| value);
-        if divisor == 0.0 {
-            return Err(unexpected(file.place("Mult"), "Mult", divisor, "a number other than 0"));
+        if divisor <= 0.0 {
+            return Err(unexpected(file.place("Mult"), "Mult", divisor, "a positive number"));
+        }
+        if !LIGHT_NM.contains(&wavelength) {
+            let expected = "nanometres of light, 100 to 20000";
+            return Err(unexpected(file.place("Wavelength"), "Wavelength", wavelength, expected));
         }
         (format!("wavelengths of {wavelength} nm"), wavelength / divisor * 1e-9)
     };
@@ -110,6 +118,14 @@ impl<'a> File<'a> {
                 let size = size(&fields, index + 1)?;
                 found = Some((name, size, array(&mut numbered, size)?));
             } else if fields.len() < MOST_FIELDS {
+                let decides = DECIDING.contains(&name) && found.is_none();
+                let other = fields.iter().find(|field| decides && field.name == name);
+                if let Some(other) = other.filter(|other| other.value != value) {
+                    let expected = "one value: the header has another before";
+                    let what = "a second value of a field of the header";
+                    let both = format!("{name} {value} beside {}", other.value);
+                    return Err(unexpected(Place::Line(index + 1), what, both, expected));
+                }
                 fields.push(Field { line: index + 1, name, value });
             }
         }

@@ -30,6 +30,8 @@ pub(super) fn of_description(
     }
     warnings.extend(channels(ingest, files, read));
     warnings.extend(repeated_heights(files, read));
+    warnings.extend(stuck_sensors(files, read));
+    warnings.extend(copies(files));
     let contradicted: Vec<_> =
         files.iter().zip(read).filter(|(_, read)| !read.contradictions.is_empty()).collect();
     if let Some((file, read)) = contradicted.first() {
@@ -82,6 +84,66 @@ pub(super) fn repeated(scan: &RawScan, format: Option<&TextFormat>) -> Option<St
         mark.count,
         100.0 * mark.count as f64 / points as f64,
         mark.others
+    ))
+}
+
+/// Points that a sensor that stood still must make: this share of a scan, and so many.
+const STUCK_SHARE: f64 = 0.05;
+const STUCK_POINTS: usize = 50;
+
+/// The longest stretch of one height, in words, if it is so long that no road has made it; the coarsest steps of an instrument
+/// repeat a height some ten times.
+pub(super) fn stuck(scan: &RawScan) -> Option<String> {
+    let heights = &scan.heights;
+    let mut longest = 0..0;
+    let mut start = 0;
+    for i in 1..=heights.len() {
+        if i == heights.len() || heights[i] != heights[start] {
+            if i - start > longest.len() && heights[start].is_finite() {
+                longest = start..i;
+            }
+            start = i;
+        }
+    }
+    let least = STUCK_POINTS.max((STUCK_SHARE * heights.len() as f64).ceil() as usize);
+    let [first, last] = [longest.start, longest.end.max(1) - 1].map(|i| scan.positions.get(i));
+    (longest.len() >= least).then(|| {
+        let [first, last] = [first, last].map(|x| 1e3 * x.copied().unwrap_or(f64::NAN));
+        format!(
+            "{} of {} points ({:.0} %), from {first:.3} to {last:.3} mm, have one and the same height",
+            longest.len(),
+            heights.len(),
+            100.0 * longest.len() as f64 / heights.len() as f64
+        )
+    })
+}
+
+/// Says so where a scan stands still.
+fn stuck_sensors(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+    let found: Vec<_> = files.iter().zip(read).filter(|(_, read)| read.stuck.is_some()).collect();
+    let (file, read) = found.first()?;
+    Some(format!(
+        "{} of {} files stand still: in the first, {}, {}: a sensor that stopped or a plate? Leave the stretch out with \
+         ingest.text.cut_start_mm and cut_end_mm, or the file",
+        found.len(),
+        files.len(),
+        file.name,
+        read.stuck.as_deref().unwrap_or_default()
+    ))
+}
+
+/// Says so where two files are one.
+fn copies(files: &[ScanFile]) -> Option<String> {
+    let copy = |(i, file): (usize, &ScanFile)| {
+        let first = files[..i].iter().find(|other| other.digest == file.digest)?;
+        Some((first.name.clone(), file.name.clone()))
+    };
+    let found: Vec<(String, String)> = files.iter().enumerate().filter_map(copy).collect();
+    let (first, second) = found.first()?;
+    Some(format!(
+        "{} of {} files are copies of others and count twice: {second} has the bytes of {first}; leave one out",
+        found.len(),
+        files.len()
     ))
 }
 

@@ -253,6 +253,15 @@ fn described(grid: &Grid, wanted: Wanted, options: &TableOptions) -> Result<Layo
         let what = twice.quantity.what();
         return Err((None, format!("--columns names the {what} more than once: keep one of them")));
     }
+    let taken = |(i, column): (usize, &DescribedColumn)| {
+        let first = columns[..i].iter().find(|other| other.place.trim() == column.place.trim())?;
+        Some((first.key.clone(), column.key.clone(), column.place.clone()))
+    };
+    if let Some((first, second, place)) = columns.iter().enumerate().find_map(taken) {
+        let problem =
+            format!("--columns gives {first} and {second} one column, {place}: each has its own");
+        return Err((None, problem));
+    }
     let is_name = |column: &&DescribedColumn| column.place.parse::<usize>().is_err();
     let names: Vec<&str> =
         columns.iter().filter(is_name).map(|column| column.place.as_str()).collect();

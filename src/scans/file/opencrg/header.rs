@@ -99,9 +99,15 @@ impl Header {
     }
 
     fn parameter(&self, key: &str) -> Result<Option<f64>, FileProblem> {
-        let Some((line, _, value)) = self.parameters.iter().find(|(_, name, _)| name == key) else {
+        let mut all = self.parameters.iter().filter(|(_, name, _)| name == key);
+        let Some((line, _, value)) = all.next() else {
             return Ok(None);
         };
+        if let Some((line, _, other)) = all.find(|(_, _, other)| other != value) {
+            let both = format!("{key} = {other} beside {value}");
+            let what = "a second value of a parameter of $ROAD_CRG";
+            return Err(unexpected(Place::Line(*line), what, both, "one value"));
+        }
         let number = value.parse().ok().filter(|number: &f64| number.is_finite());
         let wrong =
             || unexpected(Place::Line(*line), "a parameter of $ROAD_CRG", value, "a number");
