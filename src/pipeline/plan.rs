@@ -198,6 +198,13 @@ impl<'a> Plan<'a> {
             }
             Stage::Tables => {
                 let mut parameters = json!(chain.tables);
+                // Where the published tables are is no parameter: their names and digests are inputs.
+                for key in ["published", "published_corrections"] {
+                    let tables = parameters.get_mut(key).and_then(Value::as_array_mut);
+                    for table in tables.into_iter().flatten().filter_map(Value::as_object_mut) {
+                        table.remove("file");
+                    }
+                }
                 if !chain.tables.theories.is_empty() {
                     parameters["rubber"] = json!(self.material.rubber);
                 }

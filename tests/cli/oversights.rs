@@ -183,3 +183,20 @@ fn the_advice_for_an_unreadable_manifest_leads_to_a_run_that_works() {
     fs::remove_dir_all(campaign.path("out/bem")).unwrap();
     assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).code, 0);
 }
+
+/// The folder from which a command is given is no parameter of a stage.
+#[test]
+fn published_tables_do_not_make_a_result_stale_from_another_folder() {
+    let campaign = Campaign::new();
+    campaign.write("published.csv", "area_fraction,average\n0.05,1.0\n");
+    let published = "\n[[tables.published]]\nname = \"Other\"\nwaves = 3\nspeed_mm_s = 10.0\nfile = \"published.csv\"\n";
+    campaign.write("recipe.toml", &(campaign.read("recipe.toml") + published));
+    assert_eq!(outcome(&campaign, &format!("{RUN} --quiet")).code, 0);
+    let mut again =
+        campaign.command("run ../recipe.toml --out ../out --only tables --quiet --json");
+    let json = Outcome::of(again.current_dir(campaign.path("scans"))).json();
+    assert_eq!(json["stages"][0]["computed"], false, "{json}");
+    let export = outcome(&campaign, "export out --format markdown --comparison");
+    assert_eq!((export.code, export.stderr.as_str()), (0, ""));
+    assert!(export.stdout.contains("## Other"), "{}", export.stdout);
+}
