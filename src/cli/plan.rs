@@ -87,29 +87,7 @@ fn text(forecast: &Forecast) -> String {
             );
         }
     }
-    for micro in &forecast.micro {
-        let _ = writeln!(
-            text,
-            "microscale of {} waves, {} mm/s: {} columns, pressed to {} MPa, about {:.0} s",
-            micro.waves,
-            micro.speed_mm_s,
-            micro.columns,
-            significant(micro.most_pressure_mpa),
-            micro.seconds
-        );
-    }
-    for curve in &forecast.fem {
-        let _ = writeln!(
-            text,
-            "all waves of {} waves, {} mm/s: {} realisations, {} columns, about {} pressures and {:.0} s each",
-            curve.waves,
-            curve.speed_mm_s,
-            curve.realisations,
-            curve.columns,
-            curve.solves,
-            curve.seconds_each
-        );
-    }
+    finite_deformation(&mut text, forecast);
     for pairs in &forecast.multilevel {
         let count = match (pairs.pairs, pairs.most_pairs) {
             (0, _) => "no finite elements, the surface is gentle enough for the half-space".into(),
@@ -137,4 +115,31 @@ fn text(forecast: &Forecast) -> String {
     let _ =
         writeln!(text, "together      {:>12}, {:.0} MB", seconds(Some(known)), forecast.megabytes);
     text
+}
+
+/// The microscales and the curves with all waves at finite deformation.
+fn finite_deformation(text: &mut String, forecast: &Forecast) {
+    for micro in &forecast.micro {
+        let _ = writeln!(
+            text,
+            "microscale of {} waves, {} mm/s: {} columns, pressed to {} MPa, about {:.0} s",
+            micro.waves,
+            micro.speed_mm_s,
+            micro.columns,
+            significant(micro.most_pressure_mpa),
+            micro.seconds
+        );
+    }
+    for curve in &forecast.fem {
+        let _ = writeln!(
+            text,
+            "all {} waves at finite deformation, {} mm/s: {} realisations, {} columns, about {} pressures and {:.0} s each",
+            curve.waves,
+            curve.speed_mm_s,
+            curve.realisations,
+            curve.columns,
+            curve.solves,
+            curve.seconds_each
+        );
+    }
 }

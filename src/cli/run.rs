@@ -157,7 +157,7 @@ impl Run {
         let recipe = recipe.clone().absolute().map_err(CliError::failure)?;
         let out = &std::path::absolute(out).map_err(CliError::failure)?;
         claim_sweep(&recipe, last_run, out, self.folder.take_over)?;
-        let manifest = sweep::run(&recipe, out, watch, &|_, _| ());
+        let manifest = sweep::run(&recipe, out, watch);
         bar.finish();
         let manifest = manifest?;
         let cases = recipe.cases()?;

@@ -49,7 +49,7 @@ pub(super) fn count<T: FromStr>(text: &str) -> Result<T, String> {
 /// A whole number of 1 or more.
 pub(super) fn one_or_more<T: FromStr + Default + PartialEq>(text: &str) -> Result<T, String> {
     match count::<T>(text)? {
-        none if none == T::default() => Err("0 is none; give 1 or more".into()),
+        zero if zero == T::default() => Err("0 is too few: give 1 or more".into()),
         number => Ok(number),
     }
 }

@@ -8,7 +8,7 @@
 //! with the local pressures `p_i` of the macro surface under the repulsive law of the microscale.
 
 use super::bem::{CURVES_FILE, CurveRow};
-use super::micro::{LAW_FILE, LawRow, Micro, SAMPLES_FILE, SampleRow, law_of};
+use super::micro::{LAW_FILE, LawRow, Micro, SAMPLES_FILE, SampleRow, between_samples, law_of};
 use super::realise::{Surface, read_surfaces};
 use super::{Context, SolveError, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
@@ -351,17 +351,7 @@ fn microscale(
             LocalLaw::new(touch, &pressures[..falling], &separations[..falling], end)?
         }
     };
-    let microscale = Microscale::new(
-        &pressures,
-        column(|row| row.friction_half_space),
-        column(|row| row.friction_finite_deformation),
-        column(|row| row.area_finite_deformation - row.area_half_space),
-        column(|row| row.interpolation_error),
-    )
-    .with_discretisation_errors(
-        &pressures,
-        samples.iter().map(|row| row.discretisation_error).collect(),
-    );
+    let microscale = between_samples(&samples);
     let full_contact = rows.iter().map(|row| row.pressure_pa).fold(0.0, f64::max);
     Ok(Some((microscale, law, full_contact)))
 }

@@ -11,6 +11,7 @@ use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::fem::steady::COLUMNS_RANGE;
+use crate::multiscale::correction::Microscale;
 use crate::recipe::{Violation, demand};
 use crate::rubber::Rubber;
 use crate::surface::{Wave, wave};
@@ -234,6 +235,21 @@ pub fn run(
         ));
     }
     Ok(warnings)
+}
+
+/// Friction and area of a microscale between its samples, which are one or more at ascending pressures.
+pub(crate) fn between_samples(samples: &[&SampleRow]) -> Microscale {
+    let column = |value: fn(&SampleRow) -> f64| samples.iter().map(|row| value(row)).collect();
+    let pressures: Vec<f64> = column(|row| row.pressure_mpa * 1e6);
+    let mesh = samples.iter().map(|row| row.discretisation_error).collect();
+    Microscale::new(
+        &pressures,
+        column(|row| row.friction_half_space),
+        column(|row| row.friction_finite_deformation),
+        column(|row| row.area_finite_deformation - row.area_half_space),
+        column(|row| row.interpolation_error),
+    )
+    .with_discretisation_errors(&pressures, mesh)
 }
 
 /// The tasks of a run that a packed store does not have; `curves` are those of the half-space.

@@ -10,7 +10,7 @@ use crate::artifact::{
     ArtifactError, Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore,
     TOOL_VERSION, write_by_rename,
 };
-use crate::pipeline::{self, Event, Selection};
+use crate::pipeline::{self, Selection};
 use crate::recipe::{Case, Recipe};
 use crate::stages::tables::{self, FrictionRow};
 use crate::stages::{Stage, Watch, schema_of};
@@ -118,7 +118,6 @@ pub fn collect(
     plan: &SweepPlan,
     cases: Cases,
     watch: Watch,
-    observer: &(dyn Fn(&Case, Event) + Sync),
 ) -> Result<Manifest, SweepError> {
     if cases == Cases::All {
         check(path, plan)?;
@@ -150,7 +149,7 @@ pub fn collect(
             return Err(SweepError::NoCompleteCase { cases: open.len() });
         }
     }
-    finish(&prepared, &open, watch, observer)
+    finish(&prepared, &open, watch)
 }
 
 /// Fails if solves that an earlier plan asked for are damaged or of another version of the tool: solved anew
@@ -224,14 +223,9 @@ fn lines(path: &Path, states: &[ShardState]) -> Vec<String> {
 ///
 /// # Errors
 /// [`SweepError`].
-pub fn run(
-    recipe: &Recipe,
-    out: &Path,
-    watch: Watch,
-    observer: &(dyn Fn(&Case, Event) + Sync),
-) -> Result<Manifest, SweepError> {
+pub fn run(recipe: &Recipe, out: &Path, watch: Watch) -> Result<Manifest, SweepError> {
     let prepared = Prepared::new(recipe, Layout::new(out), watch)?;
-    finish(&prepared, &BTreeSet::new(), watch, observer)
+    finish(&prepared, &BTreeSet::new(), watch)
 }
 
 /// Computes all cases but those left out, which are named in a warning, and writes the tables.
@@ -239,7 +233,6 @@ fn finish(
     prepared: &Prepared,
     left_out: &BTreeSet<usize>,
     watch: Watch,
-    observer: &(dyn Fn(&Case, Event) + Sync),
 ) -> Result<Manifest, SweepError> {
     let begin = Instant::now();
     let (done, total) = (AtomicU64::new(0), prepared.cases.len() as u64);
@@ -251,7 +244,7 @@ fn finish(
         .filter(|(number, _)| !left_out.contains(number))
         .map(|(_, case)| {
             watch.check_interrupt()?;
-            let result = one_case(prepared, case, watch, observer)?;
+            let result = one_case(prepared, case, watch)?;
             (watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
             Ok(result)
         })
@@ -282,16 +275,13 @@ fn one_case(
     prepared: &Prepared,
     case: &Case,
     watch: Watch,
-    observer: &(dyn Fn(&Case, Event) + Sync),
 ) -> Result<(Input, Vec<SweepFrictionRow>), SweepError> {
     let folder = prepared.make_case(case)?;
     write_recipe(case, &folder)?;
     let selection = Selection { from: Some(Stage::Bem), ..Selection::default() };
     let scans = prepared.scans(case);
-    pipeline::run_shared(&case.recipe, scans, &folder, selection, watch.interrupted, &|event| {
-        observer(case, event);
-    })
-    .map_err(of_case(case))?;
+    pipeline::run_shared(&case.recipe, scans, &folder, selection, watch.interrupted, &|_| ())
+        .map_err(of_case(case))?;
     let view = RunView::of(folder);
     let name = Stage::Tables.name();
     let (rows, _) = view.read_table::<FrictionRow>(name, tables::FRICTION_FILE)?;

@@ -69,6 +69,26 @@ fn small_slopes_have_the_friction_of_the_half_space() {
     assert!(errors[3] < 1e-3, "{errors:?}");
 }
 
+/// In full contact at a small slope the half-space has a closed form, and the mesh is refined at every depth: on
+/// rows of one growth the error stays at 0.2 %.
+#[test]
+fn more_columns_refine_the_mesh_at_every_depth() {
+    let (amplitude, pressure, speed) = (3e-8, 3e4, 0.01);
+    let rubber = table_2_1();
+    let heights = sine(amplitude).sample(4096);
+    let mut half_space = SlidingContact::new(&rubber, speed, PERIOD, &heights).unwrap();
+    let exact = half_space.solve(pressure).unwrap().friction_coefficient;
+    let errors = [64, 128].map(|columns| {
+        let options = BlockOptions::of_profile(columns, &sine(amplitude));
+        let options = BlockOptions { height_ratio: 1.5, ..options };
+        let solution = contact(&rubber, speed, amplitude, options).solve(pressure).unwrap();
+        assert_solved(&solution);
+        assert_relative_eq!(solution.contact_area_fraction, 1.0, max_relative = 1e-12);
+        (solution.friction_coefficient / exact - 1.0).abs()
+    });
+    assert!(errors[0] < 2e-3 && errors[1] < 0.6 * errors[0], "{errors:?}");
+}
+
 /// On a flat profile every node carries its share, at any height of the pressure.
 #[test]
 fn a_flat_profile_presses_uniformly_without_friction() {

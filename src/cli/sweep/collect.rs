@@ -68,7 +68,7 @@ impl Collect {
                 }
             }
             let of = if self.complete_cases { Cases::Complete } else { Cases::All };
-            collect(&path, &planned, of, watch, &|_, _| ()).map(Box::new).map(Outcome::Tables)
+            collect(&path, &planned, of, watch).map(Box::new).map(Outcome::Tables)
         })?;
         let manifest = match outcome {
             Outcome::Next(path, next) => {

@@ -1,12 +1,11 @@
 //! Published tables beside the computed ones.
 
 use super::super::approximate::ScaleRow;
-use super::super::micro::{SAMPLES_FILE, SampleRow};
+use super::super::micro::{SAMPLES_FILE, SampleRow, between_samples};
 use super::super::realise::same_surfaces;
 use super::{FrictionRow, Model, Tables};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView};
 use crate::files;
-use crate::numerics::interpolation::CubicHermite;
 use crate::stages::{Context, StageError};
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -254,34 +253,26 @@ fn compare_corrections(
                 && is_of(row.waves, published.waves, fitted)
         })
         .collect();
-    let pressures: Vec<f64> = own.iter().map(|row| row.pressure_mpa.ln()).collect();
-    let Some((first, last)) = pressures.first().zip(pressures.last()) else {
+    if own.is_empty() {
         return Ok(Vec::new());
-    };
-    let column = |value: fn(&SampleRow) -> f64| own.iter().map(|row| value(row)).collect();
-    let half_space = CubicHermite::smooth(pressures.clone(), column(|row| row.friction_half_space));
-    let finite =
-        CubicHermite::smooth(pressures.clone(), column(|row| row.friction_finite_deformation));
-    let mesh: Option<Vec<f64>> = own.iter().map(|row| row.discretisation_error).collect();
-    let mesh = mesh.map(|errors| CubicHermite::linear(pressures.clone(), errors));
-    let interpolation_error = own.iter().map(|row| row.interpolation_error).fold(0.0, f64::max);
+    }
+    let microscale = between_samples(&own);
     let mut compared = Vec::new();
     for line in lines::<Line>(&published.file)? {
-        let log = line.pressure_mpa.ln();
-        if !(*first..=*last).contains(&log) {
-            continue;
-        }
+        let pressure = line.pressure_mpa * 1e6;
+        let Some((half_space, finite)) = microscale.friction(pressure) else { continue };
+        let mesh = microscale.correction(&[pressure]).ok();
         compared.push(CorrectionRow {
             published_table: published.name.clone(),
             waves: published.waves,
             speed_mm_s: published.speed_mm_s,
             pressure_mpa: line.pressure_mpa,
             published_half_space: line.friction_bem,
-            computed_half_space: half_space.at(log),
+            computed_half_space: half_space,
             published_finite_deformation: line.friction_fem,
-            computed_finite_deformation: finite.at(log),
-            interpolation_error,
-            discretisation_error: mesh.as_ref().map(|errors| errors.at(log)),
+            computed_finite_deformation: finite,
+            interpolation_error: microscale.interpolation_error(),
+            discretisation_error: mesh.and_then(|correction| correction.discretisation_error),
         });
     }
     Ok(compared)

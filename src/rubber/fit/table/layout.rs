@@ -239,6 +239,23 @@ fn chosen(columns: Vec<(u8, Column)>, wanted: Wanted) -> Result<Vec<Column>, Str
     Ok(chosen)
 }
 
+/// Refuses a column that is described as two quantities.
+fn each_has_its_own(columns: &[DescribedColumn]) -> Result<(), Located> {
+    for (i, column) in columns.iter().enumerate() {
+        let place = column.place.trim();
+        if let Some(first) = columns[..i].iter().find(|other| other.place.trim() == place) {
+            return Err((
+                None,
+                format!(
+                    "--columns gives {} and {} one column, {place}: each has its own",
+                    first.key, column.key
+                ),
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// The table that the user describes.
 fn described(grid: &Grid, wanted: Wanted, options: &TableOptions) -> Result<Layout, Located> {
     let columns = &options.columns;
@@ -253,15 +270,7 @@ fn described(grid: &Grid, wanted: Wanted, options: &TableOptions) -> Result<Layo
         let what = twice.quantity.what();
         return Err((None, format!("--columns names the {what} more than once: keep one of them")));
     }
-    let taken = |(i, column): (usize, &DescribedColumn)| {
-        let first = columns[..i].iter().find(|other| other.place.trim() == column.place.trim())?;
-        Some((first.key.clone(), column.key.clone(), column.place.clone()))
-    };
-    if let Some((first, second, place)) = columns.iter().enumerate().find_map(taken) {
-        let problem =
-            format!("--columns gives {first} and {second} one column, {place}: each has its own");
-        return Err((None, problem));
-    }
+    each_has_its_own(columns)?;
     let is_name = |column: &&DescribedColumn| column.place.parse::<usize>().is_err();
     let names: Vec<&str> =
         columns.iter().filter(is_name).map(|column| column.place.as_str()).collect();
