@@ -1,7 +1,9 @@
 //! What can go wrong in a finite-deformation contact.
 
+use super::steady::solution::SteadySolution;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::rubber::RubberError;
+use serde::{Deserialize, Serialize};
 
 /// Why there is no solution to report.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -71,7 +73,7 @@ impl FemError {
 }
 
 /// The last converged point of a path of growing pressure.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum PathEnd {
     /// Not even the first, slight contact converged.
     NotStarted,
@@ -90,6 +92,14 @@ pub enum PathEnd {
 }
 
 impl PathEnd {
+    pub(super) fn at(solution: &SteadySolution) -> Self {
+        Self::At {
+            pressure: solution.mean_pressure,
+            friction_coefficient: solution.friction_coefficient,
+            contact_area_fraction: solution.contact_area_fraction,
+        }
+    }
+
     fn describe(&self) -> String {
         match self {
             Self::NotStarted => "before the first contact was found".into(),

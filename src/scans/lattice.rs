@@ -28,6 +28,14 @@ impl Lattice {
     /// # Errors
     /// Why there is none, in words.
     pub(super) fn of(x: &[f64], y: &[f64]) -> Result<Self, String> {
+        let fewest = FEWEST_LINES * FEWEST_POINTS;
+        if x.len() < fewest {
+            return Err(format!(
+                "a map has at least {FEWEST_LINES} lines of {FEWEST_POINTS} points, {fewest} in all, and these are \
+                 {}; for one line leave ingest.text.y_column out",
+                x.len()
+            ));
+        }
         let (along_x, along_y) = (steps(x, y), steps(y, x));
         let (step_x, step_y) = match (along_x, along_y) {
             (Some((step_x, step_y)), None) => (step_x, step_y),

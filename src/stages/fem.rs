@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub use task::Task;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 8;
+pub const REVISION: u32 = 9;
 
 /// Section `[fem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

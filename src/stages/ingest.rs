@@ -318,6 +318,8 @@ struct ReadFile<T> {
     repeated: Option<String>,
     /// A stretch on which the sensor seems to have stood still, in words.
     stuck: Option<String>,
+    /// Heights that are smoother than those of a road, in words.
+    smooth: Option<String>,
 }
 
 /// Reads and conditions the scan files and writes the results; returns warnings.
@@ -428,6 +430,7 @@ fn read_scans(
     Ok(ReadFile {
         repeated: scans.iter().find_map(|scan| warnings::repeated(scan, Some(format))),
         stuck: scans.iter().find_map(warnings::stuck),
+        smooth: scans.iter().find_map(warnings::smooth),
         scans: scans.iter().map(condition).collect::<Result<_, StageError>>()?,
         is_text: true,
         contradictions,
@@ -478,6 +481,7 @@ fn read_instrument(
         is_erd: Family::detect(source.start()) == Some(Family::Erd),
         repeated: None,
         stuck: None,
+        smooth: None,
     };
     let Some(scan) = open_channel(source, ingest.erd_channel)? else { return Ok(read) };
     let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
@@ -492,6 +496,9 @@ fn read_instrument(
         }
         if read.stuck.is_none() {
             read.stuck = warnings::stuck(&line);
+        }
+        if read.smooth.is_none() {
+            read.smooth = warnings::smooth(&line);
         }
         read.scans.push(condition(&line, &ingest.conditioning).map_err(Box::new)?);
         Ok::<(), Failure>(())

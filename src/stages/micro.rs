@@ -24,7 +24,7 @@ pub(crate) use task::is_of;
 pub use task::{Owner, PressedSurface, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 6;
+pub const REVISION: u32 = 7;
 
 /// Section `[micro]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

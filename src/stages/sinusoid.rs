@@ -29,7 +29,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// Section `[sinusoid]` of a recipe, which stands alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

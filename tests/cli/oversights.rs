@@ -158,6 +158,40 @@ fn one_column_is_not_two_quantities_and_flat_scans_have_no_roughness() {
 }
 
 #[test]
+fn heights_of_no_road_maps_of_four_points_and_waves_that_cancel_are_told() {
+    let campaign = Campaign::new();
+    for scan in 0..3 {
+        let name = format!("scans/track_{scan}.txt");
+        let in_metres: String = campaign
+            .read(&name)
+            .lines()
+            .map(|line| match line.split_once(';').map(|(x, z)| (x, z.parse::<f64>())) {
+                Some((x, Ok(z))) => format!("{x};{:e}\n", z * 1e-6),
+                _ => format!("{line}\n"),
+            })
+            .collect();
+        campaign.write(&name, &in_metres);
+    }
+    let told = outcome(&campaign, &format!("{RUN} --only ingest")).stderr;
+    assert!(
+        told.contains("3 of 3 files are smoother than any road: in the first, track_0"),
+        "{told}"
+    );
+    assert!(told.contains("another unit than ingest.text.z_unit says"), "{told}");
+
+    campaign.write("map.csv", "x,y,z\n0,0,1\n1,0,2\n0,1,3\n1,1,4\n");
+    let map = "inspect map.csv --separator comma --x-column x --x-unit mm --y-column y --y-unit mm --z-column z --z-unit um";
+    let told = outcome(&campaign, map).error(2);
+    assert!(told.contains("at least 2 lines of 3 points, 6 in all, and these are 4"), "{told}");
+
+    let waves = "--wave 0.1:0.01 --wave 0.1:-0.01 --speed 10 --pressure 1 --rubber rubber.toml";
+    for solve in ["bem", "fem"] {
+        let told = outcome(&campaign, &format!("solve {solve} {waves}")).error(2);
+        assert!(told.contains("the waves cancel each other: of amplitudes of 0.02 mm"), "{told}");
+    }
+}
+
+#[test]
 fn a_period_that_does_not_close_is_told() {
     let campaign = Campaign::new();
     let row = |i: i32| {

@@ -119,6 +119,9 @@ impl ShapeOptions {
     }
 }
 
+/// Share of the amplitudes below which heights are what double precision rounds off.
+const ROUND_OFF: f64 = 1e-9;
+
 fn superpose(waves: &[Wave], points: Option<usize>) -> Result<Shape, String> {
     let period = common_period(waves)?;
     // Wavelengths that miss their divisor by rounding would leave a step at the end of the period.
@@ -131,6 +134,16 @@ fn superpose(waves: &[Wave], points: Option<usize>) -> Result<Shape, String> {
     let most = counts.fold(1.0, f64::max);
     let points = grid_points(most, points)?;
     let heights = wave::sample(&fitted, period, points);
+    let amplitudes: f64 = waves.iter().map(|wave| wave.amplitude.abs()).sum();
+    let left = heights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
+    if left < ROUND_OFF * amplitudes {
+        return Err(format!(
+            "the waves cancel each other: of amplitudes of {} mm in all, heights of {:.1e} mm are left, which is \
+             round-off; change an amplitude or a phase, or leave the waves out",
+            amplitudes * 1e3,
+            left * 1e3
+        ));
+    }
     Ok(Shape { period, heights, waves: fitted, warning: None })
 }
 

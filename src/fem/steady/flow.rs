@@ -28,9 +28,7 @@ impl Weights {
     pub fn with_slopes(a: f64) -> (Self, Self) {
         let m = moments(a);
         let decay = 1.0 - m[0];
-        // d m_j / da = 1 - m_j (1 + j / a), from the recursion of the moments.
-        let slopes = [0.0, 1.0, 2.0, 3.0].map(|j| 1.0 - m[j as usize] * (1.0 + j / a));
-        (Self { decay, of: cubic(&m) }, Self { decay: -decay, of: cubic(&slopes) })
+        (Self { decay, of: cubic(&m) }, Self { decay: -decay, of: cubic(&slopes(a, &m)) })
     }
 
     /// Response to `e^{iθn}` on equal intervals.
@@ -68,6 +66,19 @@ fn moments(a: f64) -> [f64; 4] {
     let m2 = (1.0 - m3) * a * RECIPROCALS[3];
     let m1 = (1.0 - m2) * a * RECIPROCALS[2];
     [(1.0 - m1) * a, m1, m2, m3]
+}
+
+/// `d m_j / da` from the recursion of the moments. Above `a = 1` as `(j / a) (m_{j-1} / a - d m_{j-1} / da)`: what is
+/// of the order `1 / a²` would be lost in `1 - m_j (1 + j / a)`.
+fn slopes(a: f64, m: &[f64; 4]) -> [f64; 4] {
+    if a > 1.0 {
+        let mut slopes = [(-a).exp(), 0.0, 0.0, 0.0];
+        for j in 1..4 {
+            slopes[j] = j as f64 / a * (m[j - 1] / a - slopes[j - 1]);
+        }
+        return slopes;
+    }
+    [0.0, 1.0, 2.0, 3.0].map(|j| 1.0 - m[j as usize] * (1.0 + j / a))
 }
 
 const RECIPROCALS: [f64; 4 + TERMS] = {
@@ -179,6 +190,23 @@ mod tests {
         let (below, above) = (moments(1.0), moments(1.0 + 1e-12));
         for j in 0..4 {
             assert!((below[j] - above[j]).abs() < 1e-11, "{below:?} {above:?}");
+        }
+    }
+
+    #[test]
+    fn slopes_of_fast_branches_keep_their_digits() {
+        // m_1 = 1 - 1/a + ..., m_2 = 1 - 2/a + 2/a² and m_3 = 1 - 3/a + 6/a² - 6/a³, the rest below 1e-40.
+        for a in [1e2, 1e5, 1e10] {
+            let found = slopes(a, &moments(a));
+            let expected = [
+                0.0,
+                a.powi(-2),
+                2.0 * a.powi(-2) - 4.0 * a.powi(-3),
+                3.0 * a.powi(-2) - 12.0 * a.powi(-3) + 18.0 * a.powi(-4),
+            ];
+            for j in 0..4 {
+                assert!((found[j] - expected[j]).abs() < 1e-14 * a.powi(-2), "{a}: {found:?}");
+            }
         }
     }
 

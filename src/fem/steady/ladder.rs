@@ -8,7 +8,7 @@
 use super::super::profile::RigidProfile;
 use super::NotConverged;
 use super::level::{Cost, Level};
-use super::path::{EXACT, EXACT_ENOUGH, Path, close, close_nearby};
+use super::path::{BARRIER, EXACT, EXACT_ENOUGH, Path, close, close_nearby, open};
 use super::solution::SteadySolution;
 use super::state::State;
 use super::transfer::transfer;
@@ -74,10 +74,10 @@ impl Ladder {
                 self.levels.push(new(*columns));
             }
             let (below, finer) = self.levels.split_at_mut(above);
-            let (below, finer) = (below.last().unwrap_or(&path.level), &mut finer[0]);
+            let (below, finer) = (below.last_mut().unwrap_or(&mut path.level), &mut finer[0]);
             let tolerance = tolerance(above + 1 == self.columns.len() - 1);
-            let raised = raise(below, finer, path, &state, tolerance);
-            cost = cost + std::mem::take(&mut finer.cost);
+            let raised = raise(below, finer, &state, tolerance);
+            cost = cost + std::mem::take(&mut finer.cost) + std::mem::take(&mut below.cost);
             let (raised, residual) = raised?;
             state = raised;
             solution = SteadySolution::read(finer, &state, speed, residual).above(&solution);
@@ -92,21 +92,18 @@ fn tolerance(last: bool) -> f64 {
     if last { EXACT } else { EXACT_ENOUGH }
 }
 
-/// The exact contact on a finer grid and its residual: from that on the grid below, or where this fails
-/// from the state of the path behind its barrier, if that is at the same pressure.
+/// The exact contact on a finer grid and its residual: from that on the grid below, or where its edges are too far
+/// from those here, from the same behind a barrier.
 fn raise(
-    below: &Level,
+    below: &mut Level,
     finer: &mut Level,
-    path: &Path,
     state: &State,
     tolerance: f64,
 ) -> Result<(State, f64), NotConverged> {
     let guess = transfer(state, 0.0, below, finer);
     close_nearby(finer, guess, tolerance).or_else(|NotConverged| {
-        if path.state.pressure != state.pressure {
-            return Err(NotConverged);
-        }
-        let guess = path.state_on(finer);
+        let opened = open(below, state.clone())?;
+        let guess = transfer(&opened, BARRIER, below, finer);
         close(finer, guess, tolerance)
     })
 }

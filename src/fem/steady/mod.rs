@@ -195,6 +195,8 @@ pub struct SteadyContact {
     options: BlockOptions,
     path: Option<Path>,
     ladder: Ladder,
+    /// The pressures in Pa that have been solved.
+    solved: Vec<(f64, PathEnd)>,
 }
 
 /// The rubber and its speed, without a profile.
@@ -247,7 +249,7 @@ impl SteadyContact {
         } else {
             Ladder::none(options.columns)
         };
-        Ok(Self { setting, profile, options, path: None, ladder })
+        Ok(Self { setting, profile, options, path: None, ladder, solved: Vec::new() })
     }
 
     /// A contact that a longer profile lets last for a `length` in m of sliding only, after which branches still carry a share
@@ -284,16 +286,29 @@ impl SteadyContact {
                 range: "positive and finite",
             });
         }
+        let before = self.path.as_mut().map(|path| {
+            // What a refusal before has spent is not this one's.
+            path.take_cost();
+            path.place()
+        });
         let solved = self.go_on(pressure).or_else(|NotConverged| self.set_out(pressure));
         match solved {
             Ok(solution) => {
                 assert_eq!(solution.mean_pressure, pressure, "a solution of another pressure");
+                self.solved.push((pressure, PathEnd::at(&solution)));
                 Ok(solution)
             }
             // Behind an interrupt every path ends.
             Err(_) if self.setting.interrupt.is_set() => Err(FemError::Interrupted),
             Err(ended) => {
-                let reached = self.last_converged(ended, pressure);
+                let reached = if self.refusals_leave_no_trace() {
+                    if let (Some(path), Some(before)) = (&mut self.path, before) {
+                        path.return_to(before);
+                    }
+                    self.last_solved(pressure)
+                } else {
+                    self.last_converged(ended, pressure)
+                };
                 if self.setting.interrupt.is_set() {
                     return Err(FemError::Interrupted);
                 }
@@ -304,6 +319,13 @@ impl SteadyContact {
                 })
             }
         }
+    }
+
+    /// Whether a pressure without a solution leaves the contact as it was, so that it need not be tried
+    /// again where the same pressures are solved anew: for a profile of many scales. Otherwise the contact is
+    /// at the last point that converged then.
+    pub fn refusals_leave_no_trace(&self) -> bool {
+        has_many_scales(&self.profile)
     }
 
     /// The solution at a pressure from the points passed before, if there are any.
@@ -404,12 +426,21 @@ impl SteadyContact {
         })
     }
 
+    /// The highest pressure below a wanted one that has been solved. A profile of many scales has no other point:
+    /// to close contacts behind the barrier one after the other would cost more than a solution.
+    fn last_solved(&self, wanted: f64) -> PathEnd {
+        let below = self.solved.iter().filter(|(pressure, _)| *pressure < wanted);
+        let last = below.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        last.map_or(PathEnd::NotGrown, |(_, at)| *at)
+    }
+
     /// The highest point at which the contact converges, of the path that ended or of what was known
     /// before; a coarser grid may have reached the `wanted` one, which says nothing of this one.
     fn last_converged(&mut self, ended: Option<Box<Path>>, wanted: f64) -> PathEnd {
         let known = self.path.take();
         let mut reached: Option<SteadySolution> = None;
-        for path in ended.map(|path| *path).into_iter().chain(known) {
+        for mut path in ended.map(|path| *path).into_iter().chain(known) {
+            path.take_cost();
             let before = self.path.replace(path);
             let solution = self.last_of_path();
             // Only a path on the grid of the ladder can be gone on with.
@@ -425,16 +456,8 @@ impl SteadyContact {
                 (best, new) => new.or(best),
             };
         }
-        let none = match has_many_scales(&self.profile) {
-            true => PathEnd::NotGrown,
-            false => PathEnd::NotStarted,
-        };
         let before = reached.filter(|solution| solution.mean_pressure < wanted);
-        before.map_or(none, |solution| PathEnd::At {
-            pressure: solution.mean_pressure,
-            friction_coefficient: solution.friction_coefficient,
-            contact_area_fraction: solution.contact_area_fraction,
-        })
+        before.map_or(PathEnd::NotStarted, |solution| PathEnd::at(&solution))
     }
 
     /// The exact solution at the last point of the path at which it converges; the path is there then.

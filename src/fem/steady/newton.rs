@@ -25,8 +25,15 @@ const MOST_HALVINGS: usize = 8;
 const STARTING_STEPS: usize = 5;
 const GROWTH: [f64; 2] = [10.0, 2.0];
 const SLIGHT: f64 = 0.1;
-/// A solve is given up where the residual is above the first number from as many steps on as the second.
-const HOPELESS: [(f64, usize); 2] = [(5.0, 5), (1.0, 8)];
+/// A solve is given up where the residual is above the first number from as many steps on as the second; in haste
+/// the last two count as well, by which a step that was too long is known at once (where it was not, 33 and 12
+/// were seen on eight waves).
+const HOPELESS: [(f64, usize); 4] = [(5.0, 5), (1.0, 8), (40.0, 1), (15.0, 2)];
+const HOPELESS_WITHOUT_HASTE: usize = 2;
+/// Newton steps from one solution to the next, of all solves on the way, without haste and with: where there is
+/// no solution, ever shorter steps would look for it without end. The longest ways that are known to end in a
+/// solution take 240 and 360.
+const MOST_SPENT: [usize; 2] = [1000, 600];
 /// Parts of det F and of A that a step must leave.
 const LEFT_OF_VOLUME: f64 = 0.2;
 const LEFT_OF_LABEL: f64 = 0.1;
@@ -65,9 +72,11 @@ impl Level {
                 *state = now;
                 return Ok((step, balance.norm));
             }
+            let rules = if self.in_haste { HOPELESS.len() } else { HOPELESS_WITHOUT_HASTE };
             let hopeless =
-                HOPELESS.iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
-            if step == target.most_steps || hopeless || self.interrupt.is_set() {
+                HOPELESS[..rules].iter().any(|(norm, from)| step >= *from && balance.norm > *norm);
+            let spent = self.cost.newton_steps >= MOST_SPENT[usize::from(self.in_haste)];
+            if step == target.most_steps || hopeless || spent || self.interrupt.is_set() {
                 break;
             }
             let change = self.direction(&balance, settled)?;

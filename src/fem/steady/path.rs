@@ -7,7 +7,7 @@ use super::state::State;
 use super::transfer::transfer;
 
 /// Barrier of a path, as a share of mean force times roughness.
-const BARRIER: f64 = 3e-2;
+pub(super) const BARRIER: f64 = 3e-2;
 
 /// Barrier with which a block is put above the profile.
 const FIRST_BARRIER: f64 = 0.3;
@@ -39,6 +39,11 @@ const MOST_KEPT: usize = 16;
 /// on the way.
 const NEARBY: f64 = 0.35;
 const NEARBY_BARRIER: f64 = 1e-3;
+/// Step in ln p at which that is given up.
+const SMALLEST_NEARBY: f64 = 5e-3;
+/// Newton steps below which the next step in ln p is longer, and how much.
+const EASY_NEARBY: usize = 5;
+const LONGER: f64 = 1.5;
 /// Attempts at the exact contact, each from a smaller barrier.
 const MOST_CLOSINGS: usize = 6;
 
@@ -52,6 +57,15 @@ pub(super) struct Path {
     /// The exact contact found last.
     exact: Option<State>,
     /// Step in ln p from one exact contact to the next that went well last.
+    step: f64,
+}
+
+/// Where a path is, on its grid.
+pub(super) struct Place {
+    state: State,
+    ratio: f64,
+    passed: Vec<State>,
+    exact: Option<State>,
     step: f64,
 }
 
@@ -132,7 +146,7 @@ impl Path {
     /// Takes the state to another level of the same profile.
     pub fn refine(&mut self, mut level: Level) -> Result<(), NotConverged> {
         level.cost = self.level.cost;
-        let mut state = self.state_on(&level);
+        let mut state = transfer(&self.state, BARRIER, &self.level, &level);
         let target =
             Target { most_steps: MOST_STEPS_ON_NEW_GRID, ..behind(state.pressure, BARRIER) };
         let solved = level.solve(&mut state, target);
@@ -149,11 +163,6 @@ impl Path {
     pub fn resolve(&mut self) -> Result<usize, NotConverged> {
         let target = behind(self.state.pressure, BARRIER);
         Ok(self.level.solve(&mut self.state, target)?.0)
-    }
-
-    /// The state on another grid of the same profile.
-    pub fn state_on(&self, level: &Level) -> State {
-        transfer(&self.state, BARRIER, &self.level, level)
     }
 
     /// The exact contact at the pressure of the path, and its residual.
@@ -179,18 +188,49 @@ impl Path {
             } else {
                 pressure
             };
-            if self.level.solve(&mut state, behind(next, NEARBY_BARRIER)).is_err() {
+            if let Ok((steps, _)) = self.level.solve(&mut state, behind(next, NEARBY_BARRIER)) {
+                if steps < EASY_NEARBY {
+                    step *= LONGER;
+                }
+            } else {
                 step = 0.5 * left.abs().min(step.abs()).copysign(left);
-                if step.abs() < SMALLEST_RATIO.ln() || self.level.interrupt.is_set() {
+                if step.abs() < SMALLEST_NEARBY || self.level.interrupt.is_set() {
+                    self.keep_behind_barrier(state);
                     return None;
                 }
             }
         }
-        self.step = (1.5 * step.abs()).min(NEARBY);
+        self.step = (LONGER * step.abs()).min(NEARBY);
         let (state, residual) =
             close_from(&mut self.level, state, NEARBY_BARRIER, tolerance).ok()?;
         self.exact = Some(state.clone());
         Some((state, residual))
+    }
+
+    /// Takes a state that is nearly in exact contact among those passed, since the path goes on from the nearest one.
+    fn keep_behind_barrier(&mut self, state: State) {
+        if let Ok(opened) = open(&mut self.level, state) {
+            self.passed.push(opened);
+        }
+    }
+
+    /// Where the path is, to return to.
+    pub fn place(&self) -> Place {
+        Place {
+            state: self.state.clone(),
+            ratio: self.ratio,
+            passed: self.passed.clone(),
+            exact: self.exact.clone(),
+            step: self.step,
+        }
+    }
+
+    /// Goes back to where the path was on the same grid; what was spent since is forgotten.
+    pub fn return_to(&mut self, place: Place) {
+        let Place { state, ratio, passed, exact, step } = place;
+        (self.state, self.ratio, self.passed, self.exact, self.step) =
+            (state, ratio, passed, exact, step);
+        self.level.cost = Cost::default();
     }
 
     /// All that was spent since the last time.
@@ -235,6 +275,13 @@ pub(super) fn close_nearby(
     close_from(level, state, NEARBY_BARRIER, tolerance)
 }
 
+/// The state behind the barrier of a path, from an exact contact.
+pub(super) fn open(level: &mut Level, mut state: State) -> Result<State, NotConverged> {
+    let target = behind(state.pressure, BARRIER);
+    level.solve(&mut state, target)?;
+    Ok(state)
+}
+
 /// The exact contact and its residual, from a state behind a small barrier.
 fn close_from(
     level: &mut Level,
@@ -263,7 +310,8 @@ fn reduce(level: &mut Level, state: &mut State, from: f64, to: f64) -> Result<()
             barrier = next;
             factor = (factor * factor).max(LESS_BARRIER);
         } else {
-            factor = factor.sqrt();
+            // The end may have shortened the step that failed.
+            factor = (next / barrier).sqrt();
             if factor > LITTLE_LESS_BARRIER || level.interrupt.is_set() {
                 return Err(NotConverged);
             }

@@ -215,19 +215,21 @@ impl Law<'_> {
         point.metric = metric;
         point.modulus = self.modulus(spring, volume);
         point.pressure = self.pressure(spring, volume);
-        Ok(self.stress(spring, measure, &[0.0; 3]))
+        Ok(self.stress(spring, [measure, &[0.0; 3], measure]))
     }
 
-    /// Adds stress and coefficients of a branch with the internal measure `internal`.
+    /// Adds stress and coefficients of a branch with the internal measure `internal` and its difference to
+    /// the measure.
     #[inline]
     pub fn branch(
         &self,
         spring: &Spring,
         point: &mut Point,
         memory: &mut Memory,
-        [measure, internal]: [&Symmetric; 2],
+        tensors: [&Symmetric; 3],
         stress: &mut Symmetric,
     ) -> Result<(), Inverted> {
+        let [measure, internal, _] = tensors;
         let (metric, past) = metric(self.rubber.rheology, internal)?;
         let volume = match self.rubber.rheology {
             Rheology::NeoHookean => (1.0 + dilatation(measure)) / past,
@@ -247,16 +249,16 @@ impl Law<'_> {
         memory.metric = metric.map(|g| factor * g);
         point.modulus += modulus;
         point.pressure += self.pressure(spring, volume);
-        let part = self.stress(spring, measure, internal);
+        let part = self.stress(spring, tensors);
         (0..3).for_each(|i| stress[i] += part[i]);
         Ok(())
     }
 
-    fn stress(&self, spring: &Spring, measure: &Symmetric, internal: &Symmetric) -> Symmetric {
+    fn stress(&self, spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric {
         if self.volumetric {
-            self.rubber.volumetric_stress(spring, measure, internal)
+            self.rubber.volumetric_stress(spring, tensors)
         } else {
-            self.rubber.shear_stress(spring, measure, internal)
+            self.rubber.shear_stress(spring, tensors)
         }
     }
 

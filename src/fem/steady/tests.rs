@@ -129,12 +129,8 @@ fn the_tangent_is_the_derivative_of_the_forces() {
                 .zip(&tangent)
                 .map(|((a, b), t)| (a - b) / (2.0 * step) - t)
                 .collect();
-            // Where branches have relaxed, glassy stiffnesses cancel to a five hundredth; 2e-5 is seen there.
             let error = largest(&difference) / largest(&tangent);
-            assert!(
-                error < if speed < 1.0 { 1e-4 } else { 1e-6 },
-                "{law:?}, {columns} columns, {speed} m/s: {error}"
-            );
+            assert!(error < 1e-6, "{law:?}, {columns} columns, {speed} m/s: {error}");
         }
     }
 }

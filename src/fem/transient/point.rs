@@ -1,8 +1,8 @@
 //! The law at one integration point with the memory of one step.
 
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, Measure, Rheology, Symmetric, contract, determinant, inverse, one_plus,
-    sandwich,
+    FiniteStrainRubber, Measure, Rheology, Symmetric, contract, determinant, difference, inverse,
+    one_plus, sandwich,
 };
 
 /// The part of the stress that a point contributes.
@@ -53,12 +53,11 @@ impl Response {
             if rubber.rheology == Rheology::NeoHookean && !positive {
                 return None;
             }
+            let tensors = [strain, &internal, &difference(strain, &internal)];
             let state = State { c: &c, c_inverse: &c_inverse, c_i: &c_i, follows: *follows };
             let (stress, modulus) = match part {
-                Part::Shear => (rubber.shear_stress(spring, strain, &internal), spring.shear),
-                Part::Volumetric => {
-                    (rubber.volumetric_stress(spring, strain, &internal), spring.volumetric)
-                }
+                Part::Shear => (rubber.shear_stress(spring, tensors), spring.shear),
+                Part::Volumetric => (rubber.volumetric_stress(spring, tensors), spring.volumetric),
             };
             (0..3).for_each(|i| response.stress[i] += stress[i]);
             match (rubber.rheology, part) {

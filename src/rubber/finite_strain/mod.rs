@@ -32,8 +32,8 @@ mod tests;
 pub use logarithm::Logarithm;
 pub use measure::Measure;
 pub use symmetric::{
-    IDENTITY, Scalar, Symmetric, contract, determinant, dilatation, dilatation_difference, inverse,
-    one_plus, sandwich,
+    IDENTITY, Scalar, Symmetric, contract, determinant, difference, dilatation,
+    dilatation_difference, inverse, one_plus, sandwich,
 };
 
 use super::{Rubber, RubberError};
@@ -142,26 +142,24 @@ impl FiniteStrainRubber {
         }
     }
 
-    /// Shear part of the conjugate stress of one spring in Pa. Nothing is lost to cancellation
-    /// however small the strains are.
+    /// Shear part of the conjugate stress in Pa of one spring at the strain `m` with the internal tensor `m_i`; as accurate
+    /// as their difference `lag = m - m_i`, which may be known better than by subtraction.
     pub fn shear_stress(
         &self,
         spring: &Spring,
-        strain: &Symmetric,
-        internal: &Symmetric,
+        [strain, internal, lag]: [&Symmetric; 3],
     ) -> Symmetric {
         match self.rheology {
             Rheology::NeoHookean => {
                 // C_i⁻¹ - C⁻¹ = adj C_i (det C - det C_i) / (det C det C_i)
                 //               + (adj C_i - adj C) / det C
                 let (volume, past) = (1.0 + dilatation(strain), 1.0 + dilatation(internal));
-                let change = dilatation_difference(strain, internal) / (volume * past);
+                let change = dilatation_difference(strain, internal, lag) / (volume * past);
                 let adjugate = [1.0 + internal[1], 1.0 + internal[0], -internal[2]];
-                let less =
-                    [internal[1] - strain[1], internal[0] - strain[0], strain[2] - internal[2]];
+                let less = [-lag[1], -lag[0], lag[2]];
                 [0, 1, 2].map(|i| spring.shear * (adjugate[i] * change + less[i] / volume))
             }
-            Rheology::Linear => [0, 1, 2].map(|i| spring.shear * (strain[i] - internal[i])),
+            Rheology::Linear => lag.map(|lag| spring.shear * lag),
         }
     }
 
@@ -169,22 +167,18 @@ impl FiniteStrainRubber {
     pub fn volumetric_stress(
         &self,
         spring: &Spring,
-        strain: &Symmetric,
-        internal: &Symmetric,
+        [strain, internal, lag]: [&Symmetric; 3],
     ) -> Symmetric {
         let half = 0.5 * spring.volumetric;
         match self.rheology {
             Rheology::NeoHookean => {
                 let past = 1.0 + dilatation(internal);
-                let pressure = half * dilatation_difference(strain, internal) / past;
+                let pressure = half * dilatation_difference(strain, internal, lag) / past;
                 let volume = 1.0 + dilatation(strain);
                 let adjugate = [1.0 + strain[1], 1.0 + strain[0], -strain[2]];
                 adjugate.map(|g| pressure * g / volume)
             }
-            Rheology::Linear => {
-                let trace = (strain[0] - internal[0]) + (strain[1] - internal[1]);
-                IDENTITY.map(|unit| half * trace * unit)
-            }
+            Rheology::Linear => IDENTITY.map(|unit| half * (lag[0] + lag[1]) * unit),
         }
     }
 
@@ -209,10 +203,11 @@ impl FiniteStrainRubber {
                 ]
             }
             // The energy knows m - m_i alone, and T = 2 ∂ψ/∂m.
-            Rheology::Linear => [
-                self.shear_stress(branch, strain, internal).map(|t| 0.5 * t),
-                self.volumetric_stress(branch, strain, internal).map(|t| 0.5 * t),
-            ],
+            Rheology::Linear => {
+                let tensors = [strain, internal, &difference(strain, internal)];
+                [self.shear_stress(branch, tensors), self.volumetric_stress(branch, tensors)]
+                    .map(|stress| stress.map(|t| 0.5 * t))
+            }
         }
     }
 
@@ -224,7 +219,7 @@ impl FiniteStrainRubber {
         strain: &Symmetric,
         internal: &Symmetric,
     ) -> [f64; 2] {
-        let flow = [0, 1, 2].map(|i| (strain[i] - internal[i]) / branch.relaxation_time);
+        let flow = difference(strain, internal).map(|lag| lag / branch.relaxation_time);
         self.driving_force(branch, strain, internal).map(|force| contract(&force, &flow))
     }
 }

@@ -35,9 +35,14 @@ pub fn dilatation(a: &Symmetric) -> f64 {
     a[0] + a[1] + determinant(a)
 }
 
-/// `det(1 + a) - det(1 + b)`, accurate for small tensors.
-pub fn dilatation_difference(a: &Symmetric, b: &Symmetric) -> f64 {
-    (a[0] - b[0]) + (a[1] - b[1]) + (determinant(a) - determinant(b))
+/// `det(1 + a) - det(1 + b)` from `a`, `b` and their difference `d = a - b`, as accurate as that.
+pub fn dilatation_difference(a: &Symmetric, b: &Symmetric, d: &Symmetric) -> f64 {
+    d[0] + d[1] + (a[0] * d[1] + b[1] * d[0]) - (a[2] + b[2]) * d[2]
+}
+
+/// `a - b`.
+pub fn difference(a: &Symmetric, b: &Symmetric) -> Symmetric {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// `1 + a`.

@@ -22,9 +22,10 @@ fn stresses(
     internal: &Symmetric,
 ) -> [Symmetric; 2] {
     let strain = measure.value();
+    let tensors = [&strain, internal, &difference(&strain, internal)];
     [
-        measure.derivative(&rubber.shear_stress(spring, &strain, internal)),
-        measure.derivative(&rubber.volumetric_stress(spring, &strain, internal)),
+        measure.derivative(&rubber.shear_stress(spring, tensors)),
+        measure.derivative(&rubber.volumetric_stress(spring, tensors)),
     ]
 }
 

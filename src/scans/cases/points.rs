@@ -80,6 +80,9 @@ fn what_is_no_grid_is_said() {
     assert!(error(&grid("4;4;2\n")).contains("two points stand at the place of x = 4, y = 4"));
     assert!(error(&grid("5.5;4;2\n")).contains("off the grid"), "{}", error(&grid("5.5;4;2\n")));
     assert!(error(&grid("900;4;2\n")).contains("most of which is empty"));
-    assert!(error("0;0;1\n1;1;2\n2;2;1\n").contains("sort the file"));
+    let diagonal: String = (0..6).map(|i| format!("{i};{i};1\n")).collect();
+    assert!(error(&diagonal).contains("sort the file"));
+    let few = error("0;0;1\n1;0;2\n0;1;1\n1;1;1\n");
+    assert!(few.contains("2 lines of 3 points, 6 in all, and these are 4"), "{few}");
     assert!(error(&grid("").replace(";1\n", ";NaN\n")).contains("missing"));
 }

@@ -2,7 +2,7 @@
 
 use super::{Fem, FemCurveRow, FemSolveRow};
 use crate::artifact::{ArtifactError, Digest, SolveStore, Solves};
-use crate::fem::error::FemError;
+use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
@@ -10,17 +10,26 @@ use crate::numerics::interpolation::CubicHermite;
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, Watch};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Revision of the solver: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 6;
+const SOLVER_REVISION: u32 = 7;
 
 /// The curve of one surface at one speed.
 pub(crate) struct CurveResult {
     pub rows: Vec<FemCurveRow>,
     pub solves: Vec<FemSolveRow>,
     pub warnings: Vec<String>,
+}
+
+/// What the store has of a pressure. That there is no solution is kept like one: it takes longer to find out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+enum Stored {
+    Solved(FemSolveRow),
+    Refused { refused: PathEnd },
 }
 
 /// One surface at one speed.
@@ -175,16 +184,32 @@ impl<'a> Solver<'a> {
         self.key["pressure"] = json!(pressure);
         let key = Digest::of_value(&self.key);
         let (waves, realisation) = (self.surface.waves, self.surface.realisation);
-        let row = match self.stored.get::<FemSolveRow>(&key)? {
-            Some(row) => {
+        let row = match self.stored.get(&key)? {
+            Some(Stored::Solved(row)) => {
                 self.skipped.push(pressure);
                 FemSolveRow { waves, realisation, ..row }
             }
-            None => {
-                let row = self.solve(pressure)?;
-                self.stored.put(&key, &row)?;
-                row
+            Some(Stored::Refused { refused: reached }) => {
+                if !self.block.refusals_leave_no_trace() {
+                    self.skipped.push(pressure);
+                }
+                let (wanted, columns) = (pressure, self.columns);
+                return Err(FemError::PathEnded { wanted, columns, reached }.into());
             }
+            None => match self.solve(pressure) {
+                Ok(row) => {
+                    self.stored.put(&key, &row)?;
+                    row
+                }
+                Err(error) => {
+                    if let SolveError::FiniteDeformation(FemError::PathEnded { reached, .. }) =
+                        error
+                    {
+                        self.stored.put(&key, &Stored::Refused { refused: reached })?;
+                    }
+                    return Err(error);
+                }
+            },
         };
         self.solves.push(row.clone());
         Ok(row)
@@ -192,7 +217,10 @@ impl<'a> Solver<'a> {
 
     fn solve(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
         for skipped in std::mem::take(&mut self.skipped) {
-            self.block.solve(skipped)?;
+            match self.block.solve(skipped) {
+                Ok(_) | Err(FemError::PathEnded { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
         }
         let start = Instant::now();
         let solution = self.block.solve(pressure)?;
@@ -300,6 +328,8 @@ fn problem_parts(rubber: &Rubber, surface: &Surface, speed_mm_s: f64, columns: u
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::Interrupt;
+    use crate::surface::Wave;
 
     fn solved(pressure_mpa: f64, friction_coefficient: f64, area: f64) -> FemSolveRow {
         FemSolveRow {
@@ -318,6 +348,45 @@ mod tests {
             columns: 256,
             seconds: 0.0,
         }
+    }
+
+    /// A pressure far beyond the modulus: refused, and known as that to the next run.
+    #[test]
+    fn a_refusal_is_kept_and_not_tried_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = SolveStore::open(folder.path()).unwrap();
+        let wave = Wave { wavelength: 1e-3, amplitude: 1e-4, phase: 0.0 };
+        let surface = Surface { waves: 1, realisation: 1, profile: vec![wave] };
+        let (interrupted, parameters) = (Interrupt::default(), Fem::default());
+        let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
+        let rubber = Rubber::table_2_1();
+        let solver =
+            || Solver::new(16, &parameters, &rubber, &surface, 10.0, &store, watch).unwrap();
+        let refused = |mut solver: Solver, pressure: f64| match solver.point(pressure) {
+            Err(SolveError::FiniteDeformation(FemError::PathEnded {
+                wanted,
+                columns,
+                reached,
+            })) => {
+                assert_eq!((wanted, columns), (pressure, 16));
+                reached
+            }
+            other => panic!("{other:?}"),
+        };
+        let hopeless = 1e13;
+        let reached = refused(solver(), hopeless);
+        assert_eq!(refused(solver(), hopeless), reached);
+        // The store is believed: it says so of a pressure that has a solution.
+        let mut solver_of_note = solver();
+        solver_of_note.key["pressure"] = json!(1e4);
+        let key = Digest::of_value(&solver_of_note.key);
+        let refusal = Stored::Refused { refused: PathEnd::NotGrown };
+        solver_of_note.stored.put(&key, &refusal).unwrap();
+        assert_eq!(refused(solver(), 1e4), PathEnd::NotGrown);
+        // And goes on behind one.
+        let mut behind = solver();
+        assert!(behind.point(hopeless).is_err());
+        assert_eq!(behind.point(2e4).unwrap().pressure_mpa, 0.02);
     }
 
     /// Solves of a real curve: from the second to the third the area grows by a hundredth and friction by a

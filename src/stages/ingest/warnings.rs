@@ -31,6 +31,7 @@ pub(super) fn of_description(
     warnings.extend(channels(ingest, files, read));
     warnings.extend(repeated_heights(files, read));
     warnings.extend(stuck_sensors(files, read));
+    warnings.extend(smooth_scans(files, read));
     warnings.extend(copies(files));
     let contradicted: Vec<_> =
         files.iter().zip(read).filter(|(_, read)| !read.contradictions.is_empty()).collect();
@@ -116,6 +117,41 @@ pub(super) fn stuck(scan: &RawScan) -> Option<String> {
             100.0 * longest.len() as f64 / heights.len() as f64
         )
     })
+}
+
+/// Interquartile range in m below which heights are those of no road, on a length in m and more: worn asphalt has
+/// some hundred times more.
+const SMOOTH: f64 = 1e-7;
+const LENGTH_OF_SMOOTH: f64 = 2e-3;
+
+/// The middle half of the heights of a scan that is smoother than any road, in words.
+pub(super) fn smooth(scan: &RawScan) -> Option<String> {
+    let length = scan.positions.last()? - scan.positions.first()?;
+    let mut heights: Vec<f64> = scan.heights.iter().copied().filter(|z| z.is_finite()).collect();
+    heights.sort_by(f64::total_cmp);
+    let [low, high] = [1, 3].map(|quarter| heights.get(quarter * heights.len() / 4).copied());
+    let range = high? - low?;
+    (length.abs() >= LENGTH_OF_SMOOTH && range > 0.0 && range < SMOOTH).then(|| {
+        format!(
+            "half of the heights lie within {:.2e} um on {:.1} mm of track",
+            range * 1e6,
+            length.abs() * 1e3
+        )
+    })
+}
+
+/// Says so where a scan is smoother than any road.
+fn smooth_scans(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+    let found: Vec<_> = files.iter().zip(read).filter(|(_, read)| read.smooth.is_some()).collect();
+    let (file, read) = found.first()?;
+    Some(format!(
+        "{} of {} files are smoother than any road: in the first, {}, {}; are the heights in another unit than {}?",
+        found.len(),
+        files.len(),
+        file.name,
+        read.smooth.as_deref().unwrap_or_default(),
+        if read.is_text { "ingest.text.z_unit says" } else { "the file says" }
+    ))
 }
 
 /// Says so where a scan stands still.

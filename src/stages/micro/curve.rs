@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Revision of the solvers: part of the key of every stored solve.
-const SOLVER_REVISION: u32 = 5;
+const SOLVER_REVISION: u32 = 6;
 /// Grid points of the half-space on the shortest wave.
 const POINTS_PER_WAVE: f64 = 1024.0;
 /// Samples of the repulsive law up to full contact, at `p* (0.1 + 0.9 t)^4`: see [`LocalLaw`].

@@ -15,7 +15,7 @@ use serde_json::json;
 
 /// Revision of the contact solvers: part of the key of every stored solve. To be raised when the
 /// same problem gives another number.
-const SOLVER_REVISION: u32 = 6;
+const SOLVER_REVISION: u32 = 7;
 
 /// A contact model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
