@@ -91,7 +91,6 @@ main_job_in_short() {
     sed -e 's/^waves = \[8, 9\]/waves = [8]/' -e 's/^realisations = 5/realisations = 1/' \
         -e 's/^speeds_mm_s = .*/speeds_mm_s = [10.0]/' \
         -e 's/^area_fractions = .*/area_fractions = [0.02, 0.03, 0.05]/' \
-        -e 's/^columns_per_shortest_wavelength = 128/columns_per_shortest_wavelength = 64/' \
         -e "s|\"\.\./data/|\"$PWD/data/|" pipelines/asphalt.toml >"$scratch/asphalt.toml"
     cargo run --release --locked -- run "$scratch/asphalt.toml" --out "$runs/asphalt"
 }

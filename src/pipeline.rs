@@ -384,7 +384,10 @@ fn compute(
         },
         Stage::Tables => {
             let with = tables::Models {
-                hybrid: chain.micro.is_some(),
+                hybrid: chain.micro.map(|micro| tables::Corrected {
+                    rms_slope_threshold: micro.rms_slope_threshold,
+                    rules: chain.hybrid,
+                }),
                 fem: chain.fem.is_some(),
                 multilevel: chain.multilevel.is_some(),
             };

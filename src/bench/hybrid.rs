@@ -36,9 +36,14 @@ pub(super) const CASES: &[Case] = &[Case {
 const HALF_SPACE: &str =
     "speeds_mm_s = [10.0]\narea_fractions = [0.03]\npoints_per_shortest_wavelength = 256";
 
+/// The rule of the thesis, the steepest wave alone: the surface is its own.
+const THESIS: &str = "rms_slope_threshold = 1.0\ntolerance = 1e-3\n[hybrid]\ncorrection = \"difference\"\n\
+                      local_pressures = \"points\"";
+
 /// The whole chain of stages, from the waves to the table of corrected friction.
 fn hybrid(columns: u32) -> Result<Prepared, Failure> {
-    let sections = format!("{HALF_SPACE}\n[micro]\ncolumns_per_shortest_wavelength = {columns}");
+    let sections =
+        format!("{HALF_SPACE}\n[micro]\ncolumns_per_shortest_wavelength = {columns}\n{THESIS}");
     let campaign = Campaign::new(&surface(WAVES), 1, &sections)?;
     Ok(Box::new(move || {
         campaign.run(|run| {

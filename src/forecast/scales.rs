@@ -1,6 +1,7 @@
 //! Which model each scale of a surface gets, and why.
 
 use crate::rubber::Rubber;
+use crate::stages::micro::Micro;
 use crate::surface::{SineScale, Wave};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
@@ -72,10 +73,15 @@ fn choose(slope: f64, threshold: Option<f64>) -> (ScaleModel, String) {
             (ScaleModel::FiniteElements, reason)
         }
         Some(threshold) => (ScaleModel::HalfSpace, format!("slope up to {threshold}")),
-        None if slope > 1.0 => {
-            (ScaleModel::HalfSpace, "steeper than 1, but the recipe has no [micro]".into())
+        None => {
+            let usual = Micro::default().rms_slope_threshold;
+            let reason = if slope > usual {
+                format!("steeper than {usual}, but the recipe has no [micro]")
+            } else {
+                "no [micro]".into()
+            };
+            (ScaleModel::HalfSpace, reason)
         }
-        None => (ScaleModel::HalfSpace, "no [micro]".into()),
     }
 }
 

@@ -5,7 +5,20 @@ use crate::numerics::interpolation::CubicHermite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How local corrections become one.
+/// How the change of the friction of the microscale is applied to the friction of all waves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CorrectionRule {
+    /// Multiplied: friction changes by the ratio of both frictions of the microscale. The waves that are left to
+    /// the half-space deform too, and so get the same relative change.
+    #[default]
+    Ratio,
+    /// Added: friction changes by the difference of both frictions of the microscale, the rule of the thesis
+    /// (5.1.1-2).
+    Difference,
+}
+
+/// How local frictions become one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeanRule {
@@ -27,18 +40,48 @@ pub struct Microscale {
     discretisation_error: Option<CubicHermite>,
 }
 
-/// Corrections of friction and area.
+/// Friction of the microscale under both models, averaged over the macro contact, and the change of the area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
-    /// Change of friction, weighted with the local pressures.
-    pub force: f64,
-    /// Change of friction, the plain mean over the contact points.
-    pub points: f64,
+    /// Mean friction weighted with the local pressures.
+    pub force: MeanFriction,
+    /// Plain mean of friction over the contact points.
+    pub points: MeanFriction,
     /// Change of the contact area fraction.
     pub area: f64,
-    /// Estimated error by the mesh, weighted with the local pressures; none if that of the microscale is
-    /// not known.
+    /// Estimated error of the friction at finite deformation by the mesh, weighted with the local pressures; none
+    /// if that of the microscale is not known.
     pub discretisation_error: Option<f64>,
+}
+
+/// A mean friction coefficient of the microscale under both models.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeanFriction {
+    /// On the half-space.
+    pub half_space: f64,
+    /// At finite deformation.
+    pub finite_deformation: f64,
+}
+
+impl MeanFriction {
+    /// `finite_deformation - half_space`.
+    pub fn difference(self) -> f64 {
+        self.finite_deformation - self.half_space
+    }
+
+    /// The friction coefficient of all waves, `of_all_waves` on the half-space, corrected by a rule.
+    pub fn applied(self, rule: CorrectionRule, of_all_waves: f64) -> f64 {
+        of_all_waves + self.gain(rule, of_all_waves) * self.difference()
+    }
+
+    /// What the difference, and so its error, is multiplied with in [`Self::applied`]. Without friction on the
+    /// half-space, as of a rubber without loss, there is no ratio, and the difference is added.
+    pub fn gain(self, rule: CorrectionRule, of_all_waves: f64) -> f64 {
+        match rule {
+            CorrectionRule::Ratio if self.half_space > 0.0 => of_all_waves / self.half_space,
+            CorrectionRule::Ratio | CorrectionRule::Difference => 1.0,
+        }
+    }
 }
 
 impl Microscale {
@@ -105,38 +148,62 @@ impl Microscale {
         sampled.then(|| (self.half_space.at(log), self.finite.at(log)))
     }
 
-    /// The corrections under local pressures in Pa on equidistant points. Pressures below the
-    /// smallest sampled one are no contact points; their little force takes the correction of
-    /// the smallest, their area none.
+    /// The correction under local pressures in Pa on equidistant points. Pressures below the
+    /// smallest sampled one are no contact points; their little force takes the friction of
+    /// the smallest, their area none. `None` if there is no contact point.
     ///
     /// # Errors
     /// [`LawError::BeyondSamples`] for a pressure above the largest sampled one.
-    pub fn correction(&self, local: &[f64]) -> Result<Correction, LawError> {
+    pub fn correction(&self, local: &[f64]) -> Result<Option<Correction>, LawError> {
         let (smallest, largest) = self.pressures;
-        let (mut force, mut load, mut points, mut count, mut area) = (0.0, 0.0, 0.0, 0, 0.0);
-        let mut mesh = 0.0;
+        let (mut force, mut points) = (Sums::default(), Sums::default());
+        let (mut area, mut mesh) = (0.0, 0.0);
         for &pressure in local.iter().filter(|p| **p > 0.0) {
             if pressure > largest {
                 return Err(LawError::BeyondSamples { pressure, largest });
             }
             let log = pressure.max(smallest).ln();
-            let change = self.finite.at(log) - self.half_space.at(log);
-            force += pressure * change;
-            load += pressure;
+            let friction = (self.half_space.at(log), self.finite.at(log));
+            force.add(pressure, friction);
             mesh +=
                 self.discretisation_error.as_ref().map_or(0.0, |error| pressure * error.at(log));
             if pressure >= smallest {
-                points += change;
-                count += 1;
+                points.add(1.0, friction);
                 area += self.area_change.at(log);
             }
         }
-        let mean = |sum: f64, over: f64| if over > 0.0 { sum / over } else { 0.0 };
-        Ok(Correction {
-            force: mean(force, load),
-            points: mean(points, f64::from(count)),
+        let load = force.weight;
+        let (Some(force), Some(points)) = (force.mean(), points.mean()) else { return Ok(None) };
+        Ok(Some(Correction {
+            force,
+            points,
             area: area / local.len() as f64,
-            discretisation_error: self.discretisation_error.is_some().then(|| mean(mesh, load)),
+            discretisation_error: self.discretisation_error.is_some().then(|| mesh / load),
+        }))
+    }
+}
+
+/// Weighted sums of the friction of both models.
+#[derive(Default)]
+struct Sums {
+    weight: f64,
+    half_space: f64,
+    finite_deformation: f64,
+}
+
+impl Sums {
+    fn add(&mut self, weight: f64, (half_space, finite_deformation): (f64, f64)) {
+        self.weight += weight;
+        self.half_space += weight * half_space;
+        self.finite_deformation += weight * finite_deformation;
+    }
+
+    /// `None` without any weight.
+    fn mean(&self) -> Option<MeanFriction> {
+        let Self { weight, half_space, finite_deformation } = *self;
+        (weight > 0.0).then(|| MeanFriction {
+            half_space: half_space / weight,
+            finite_deformation: finite_deformation / weight,
         })
     }
 }
@@ -173,7 +240,7 @@ mod tests {
         let pressures = [1.0, 2.0, 4.0, 8.0];
         let errors = pressures.iter().map(|p: &f64| 1e-3 * p.ln()).collect();
         let known = microscale().with_discretisation_errors(&pressures, Some(errors));
-        let correction = known.correction(&[0.0, 2.0, 6.0]).unwrap();
+        let correction = known.correction(&[0.0, 2.0, 6.0]).unwrap().unwrap();
         let expected = 1e-3 * (2.0 * 2.0_f64.ln() + 6.0 * 6.0_f64.ln()) / 8.0;
         assert_relative_eq!(
             correction.discretisation_error.unwrap(),
@@ -181,16 +248,28 @@ mod tests {
             max_relative = 1e-12
         );
         let unknown = microscale().with_discretisation_errors(&pressures, None);
-        assert_eq!(unknown.correction(&[2.0]).unwrap().discretisation_error, None);
+        assert_eq!(unknown.correction(&[2.0]).unwrap().unwrap().discretisation_error, None);
     }
 
     #[test]
     fn means_are_those_by_hand() {
-        let correction = microscale().correction(&[0.0, 0.5, 2.0, 6.0]).unwrap();
+        let correction = microscale().correction(&[0.0, 0.5, 2.0, 6.0]).unwrap().unwrap();
         let (two, six) = (0.1 + 0.1 * 2.0_f64.ln(), 0.1 + 0.1 * 6.0_f64.ln());
-        assert_relative_eq!(correction.points, 0.5 * (two + six), max_relative = 1e-12);
+        let points = 0.5 * (two + six);
+        assert_relative_eq!(correction.points.difference(), points, max_relative = 1e-12);
         let force = (0.5 * 0.1 + 2.0 * two + 6.0 * six) / 8.5;
-        assert_relative_eq!(correction.force, force, max_relative = 1e-12);
+        assert_relative_eq!(correction.force.difference(), force, max_relative = 1e-12);
+        assert_relative_eq!(correction.force.half_space, 0.4, max_relative = 1e-12);
+        let friction = |rule| correction.force.applied(rule, 0.7);
+        assert_relative_eq!(
+            friction(CorrectionRule::Difference),
+            0.7 + force,
+            max_relative = 1e-12
+        );
+        let ratio = (0.4 + force) / 0.4;
+        assert_relative_eq!(friction(CorrectionRule::Ratio), 0.7 * ratio, max_relative = 1e-12);
+        let lossless = MeanFriction { half_space: 0.0, finite_deformation: 0.0 };
+        assert_eq!(lossless.applied(CorrectionRule::Ratio, 0.0), 0.0);
         assert_relative_eq!(correction.area, 0.01 * 12.0_f64.ln() / 4.0, max_relative = 1e-12);
     }
 
@@ -214,11 +293,9 @@ mod tests {
     }
 
     #[test]
-    fn no_pressure_no_correction() {
-        let correction = microscale().correction(&[0.0; 3]).unwrap();
-        assert_eq!(
-            correction,
-            Correction { force: 0.0, points: 0.0, area: 0.0, discretisation_error: None }
-        );
+    fn no_contact_point_no_correction() {
+        for local in [[0.0; 3], [0.0, 0.9, 0.0]] {
+            assert_eq!(microscale().correction(&local).unwrap(), None);
+        }
     }
 }

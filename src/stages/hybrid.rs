@@ -2,7 +2,8 @@
 //! (thesis 5.1).
 //!
 //! ```text
-//! μ = μ_init(p) + mean_i (μ_FEM(p_i) - μ_BEM(p_i))
+//! μ = μ_init(p) mean_i μ_FEM(p_i) / mean_i μ_BEM(p_i)        correction = "ratio"
+//! μ = μ_init(p) + mean_i (μ_FEM(p_i) - μ_BEM(p_i))           correction = "difference", the thesis' rule
 //! ```
 //!
 //! with the local pressures `p_i` of the macro surface under the repulsive law of the microscale.
@@ -12,7 +13,7 @@ use super::micro::{LAW_FILE, LawRow, Micro, SAMPLES_FILE, SampleRow, between_sam
 use super::realise::{Surface, read_surfaces};
 use super::{Context, SolveError, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
-use crate::multiscale::correction::{Correction, MeanRule, Microscale, running_mean};
+use crate::multiscale::correction::{CorrectionRule, MeanRule, Microscale, running_mean};
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{
     LawEnd, LawError, LocalLaw, SoftContact, SoftContactError, SoftContactSolution,
@@ -24,13 +25,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// Section `[hybrid]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hybrid {
-    /// How the local corrections are averaged.
+    /// How the change of the friction of the microscale is applied to the friction of all waves.
+    pub correction: CorrectionRule,
+    /// How the friction of the microscale is averaged over the macro contact.
     pub mean: MeanRule,
     /// Whose separation over pressure the macro surface meets.
     pub law: RepulsiveLaw,
@@ -43,9 +46,9 @@ pub struct Hybrid {
 #[serde(rename_all = "kebab-case")]
 pub enum LocalPressures {
     /// Those of the points of the macro grid.
-    #[default]
     Points,
-    /// Their means over one period of the microscale about each point.
+    /// Their means over one period of the microscale about each point: what its friction is a function of.
+    #[default]
     Periods,
 }
 
@@ -88,10 +91,11 @@ pub struct HybridRow {
     /// beyond the sampled microscale.
     #[schemars(extend("unit" = "1"))]
     pub friction_coefficient: Option<f64>,
-    /// Correction by the plain mean over the contact points.
+    /// Friction of the microscale at finite deformation less that on the half-space, the plain mean over the
+    /// contact points.
     #[schemars(extend("unit" = "1"))]
     pub correction_points: Option<f64>,
-    /// Correction by the mean weighted with the local pressures, which conserves force.
+    /// The same by the mean weighted with the local pressures, which conserves force.
     #[schemars(extend("unit" = "1"))]
     pub correction_force: Option<f64>,
     /// Change of the contact area fraction by finite deformation, the mean over all points.
@@ -365,23 +369,24 @@ fn corrected(
     residual: f64,
 ) -> HybridRow {
     let points = local.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
-    // Without a contact point the microscale has nothing to say.
-    let correction = microscale.correction(local).ok().filter(|_| points > 0);
-    let chosen = |correction: &Correction| match parameters.mean {
+    // A pressure beyond the samples is the only error, and what the missing value says.
+    let correction = microscale.correction(local).ok().flatten();
+    let (rule, of_all_waves) = (parameters.correction, curve.friction_coefficient);
+    let chosen = correction.map(|correction| match parameters.mean {
         MeanRule::Force => correction.force,
         MeanRule::Points => correction.points,
-    };
+    });
+    let gain = chosen.map_or(1.0, |friction| friction.gain(rule, of_all_waves));
     HybridRow {
-        friction_coefficient: correction.as_ref().map(|c| curve.friction_coefficient + chosen(c)),
-        correction_points: correction.as_ref().map(|c| c.points),
-        correction_force: correction.as_ref().map(|c| c.force),
-        correction_of_area: correction.as_ref().map(|c| c.area),
-        interpolation_error: curve.interpolation_error + microscale.interpolation_error(),
+        friction_coefficient: chosen.map(|friction| friction.applied(rule, of_all_waves)),
+        correction_points: correction.map(|c| c.points.difference()),
+        correction_force: correction.map(|c| c.force.difference()),
+        correction_of_area: correction.map(|c| c.area),
+        interpolation_error: curve.interpolation_error + gain * microscale.interpolation_error(),
         discretisation_error: correction
-            .as_ref()
             .and_then(|c| c.discretisation_error)
             .zip(curve.discretisation_error)
-            .map(|(mesh, grid)| mesh + grid),
+            .map(|(mesh, grid)| gain * mesh + grid),
         contact_points_fraction: points as f64 / local.len() as f64,
         load_beyond_full_contact: share_beyond(local, full_contact),
         largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max) / 1e6,

@@ -31,7 +31,7 @@ pub const REVISION: u32 = 7;
 #[serde(deny_unknown_fields, default)]
 pub struct Micro {
     /// Waves with a larger root mean square slope are the microscale, where deformations are too
-    /// large for the half-space.
+    /// large for the half-space. The default of 0.7 takes in three waves of the bundled asphalt.
     pub rms_slope_threshold: f64,
     /// Elements on the shortest wave.
     pub columns_per_shortest_wavelength: u32,
@@ -52,9 +52,9 @@ pub struct Micro {
 impl Default for Micro {
     fn default() -> Self {
         Self {
-            rms_slope_threshold: 1.0,
-            columns_per_shortest_wavelength: 96,
-            tolerance: 1e-3,
+            rms_slope_threshold: 0.7,
+            columns_per_shortest_wavelength: 48,
+            tolerance: 5e-3,
             estimate_mesh_error: true,
             points_per_shortest_macro_wavelength: 32,
             contact_length_mm: None,

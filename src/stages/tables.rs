@@ -11,7 +11,7 @@ use super::approximate::{ScaleRow, WAVES_FILE};
 use super::bem::{CURVES_FILE, CurveRow};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::fem::{FEM_FILE, FemCurveRow};
-use super::hybrid::{HYBRID_FILE, HybridRow};
+use super::hybrid::{HYBRID_FILE, Hybrid, HybridRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
@@ -31,7 +31,7 @@ use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 7;
+pub const REVISION: u32 = 8;
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -110,14 +110,23 @@ const PERSSON: &str = "persson";
 const KLUEPPEL_HEINRICH: &str = "klueppel-heinrich";
 
 /// The models of a run besides the half-space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Models {
-    /// The recipe has a section `[micro]`.
-    pub hybrid: bool,
+    /// How friction is corrected, if the recipe has a section `[micro]`.
+    pub hybrid: Option<Corrected>,
     /// The recipe has a section `[fem]`.
     pub fem: bool,
     /// The recipe has a section `[multilevel]`.
     pub multilevel: bool,
+}
+
+/// How the half-space is corrected by its steepest waves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corrected {
+    /// Waves of at most this root mean square slope are left to the half-space.
+    pub rms_slope_threshold: f64,
+    /// The rules of the correction.
+    pub rules: Hybrid,
 }
 
 /// The averaged friction: `friction.arrow`.
@@ -212,10 +221,11 @@ pub fn run(
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
+    let (fitted, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
     let (half_space, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
     let bem: Vec<Value> = half_space.iter().cloned().map(Value::from).collect();
     let mut rows = average(BEM, bem.clone());
-    if models.hybrid {
+    if models.hybrid.is_some() {
         let (hybrid, _) = run.read_table::<HybridRow>("hybrid", HYBRID_FILE)?;
         let values = hybrid.iter().filter_map(value_of).collect();
         rows.extend(average(HYBRID, complete(values, &bem)));
@@ -225,7 +235,9 @@ pub fn run(
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
         rows.extend(average(FEM, complete(values, &bem)));
     }
-    model_error::add(&mut rows);
+    if let Some(corrected) = models.hybrid {
+        model_error::add(&mut rows, &fitted, corrected);
+    }
     if models.multilevel {
         rows.extend(multilevel::read(run)?);
     }
@@ -238,12 +250,11 @@ pub fn run(
         }
         context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
     }
-    let (fitted, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
     context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
-    if models.hybrid || models.fem || models.multilevel || !theories.is_empty() {
+    if models.hybrid.is_some() || models.fem || models.multilevel || !theories.is_empty() {
         context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
     }
     published::write(parameters, &rows, &fitted, run, context)?;

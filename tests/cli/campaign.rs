@@ -341,7 +341,7 @@ fn with_microscale() -> Campaign {
 #[test]
 fn warnings_are_repeated_as_long_as_their_results_are_in_use() {
     let campaign = with_microscale();
-    let warning = "no wave is steeper than 1 (micro.rms_slope_threshold)";
+    let warning = "no wave is steeper than 0.7 (micro.rms_slope_threshold)";
     for _ in 0..2 {
         let run = outcome(&campaign, RUN);
         assert_eq!(run.code, 0);

@@ -86,17 +86,12 @@ fn the_microscale_is_solved_over_the_pressures_that_the_macro_contact_asks_for()
     assert!(samples[samples.len() - 1].pressure_mpa >= asked);
 }
 
-#[test]
-fn the_correction_is_the_mean_over_the_macro_contact() {
-    let campaign = campaign(0.016, "[hybrid]\nmean = \"points\"");
-    let (recipe, view) = solved(&campaign);
+/// The macro contact of the last value of realisation 2, solved here: its row and its pressures in Pa.
+fn macro_contact(recipe: &Recipe, view: &RunView) -> (HybridRow, Vec<f64>) {
     let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
-    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
     let (laws, _) = view.read_table::<LawRow>("micro", LAW_FILE).unwrap();
-    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
     let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
-    assert_eq!(rows.len(), curves.len());
-    let surface = &read_surfaces(&view).unwrap()[1];
+    let surface = &read_surfaces(view).unwrap()[1];
     let law = LocalLaw::new(
         laws[0].touch_separation_m,
         &laws.iter().map(|row| row.pressure_pa).collect::<Vec<_>>(),
@@ -106,18 +101,33 @@ fn the_correction_is_the_mean_over_the_macro_contact() {
     .unwrap();
     let heights = wave::sample(&surface.profile[1..], 2.5e-4, 32);
     let mut contact = SoftContact::new(&rubber, 0.02, 2.5e-4, &heights, law).unwrap();
-    let row = rows.iter().rfind(|row| row.realisation == 2).unwrap();
+    let row = rows.iter().rfind(|row| row.realisation == 2).unwrap().clone();
     let solution = contact.solve(row.pressure_mpa * 1e6).unwrap();
-    // Straight lines between the samples, an oracle as good as the samples are dense.
-    let change = |p: f64| {
-        let above = samples.iter().position(|s| s.pressure_mpa * 1e6 > p).unwrap_or(1).max(1);
-        let (a, b) = (&samples[above - 1], &samples[above]);
-        let at = |s: &SampleRow| s.friction_finite_deformation - s.friction_half_space;
-        let t = (p / 1e6 / a.pressure_mpa).ln() / (b.pressure_mpa / a.pressure_mpa).ln();
-        at(a) + t.clamp(0.0, 1.0) * (at(b) - at(a))
-    };
+    (row, solution.pressure)
+}
+
+/// A value of the samples at a pressure in Pa by straight lines between them, an oracle as good as the samples are
+/// dense.
+fn between(samples: &[SampleRow], p: f64, value: impl Fn(&SampleRow) -> f64) -> f64 {
+    let above = samples.iter().position(|s| s.pressure_mpa * 1e6 > p).unwrap_or(1).max(1);
+    let (a, b) = (&samples[above - 1], &samples[above]);
+    let t = (p / 1e6 / a.pressure_mpa).ln() / (b.pressure_mpa / a.pressure_mpa).ln();
+    value(a) + t.clamp(0.0, 1.0) * (value(b) - value(a))
+}
+
+#[test]
+fn the_thesis_adds_the_mean_difference_over_the_macro_contact() {
+    let rules = "correction = \"difference\"\nmean = \"points\"\nlocal_pressures = \"points\"";
+    let campaign = campaign(0.016, &format!("[hybrid]\n{rules}"));
+    let (recipe, view) = solved(&campaign);
+    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    assert_eq!(rows.len(), curves.len());
+    let (row, pressures) = macro_contact(&recipe, &view);
+    let change = |p: f64| between(&samples, p, SampleRow::correction);
     let smallest = samples[0].pressure_mpa * 1e6;
-    let pressed = || solution.pressure.iter().copied().filter(|p| *p > 0.0);
+    let pressed = || pressures.iter().copied().filter(|p| *p > 0.0);
     let force = pressed().map(|p| p * change(p)).sum::<f64>() / pressed().sum::<f64>();
     let points: Vec<f64> = pressed().filter(|p| *p >= smallest).map(change).collect();
     let points = points.iter().sum::<f64>() / points.len() as f64;
@@ -132,6 +142,25 @@ fn the_correction_is_the_mean_over_the_macro_contact() {
         assert!((sum - local.friction_finite_deformation).abs() < 1e-12);
     }
     assert!(!locals.is_empty());
+}
+
+#[test]
+fn by_default_friction_changes_by_the_ratio_of_the_forces_of_the_microscale() {
+    let campaign = campaign(0.016, "");
+    let (recipe, view) = solved(&campaign);
+    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let (row, pressures) = macro_contact(&recipe, &view);
+    // Means over a period of the microscale, 8 of the 32 points.
+    let window = |i: usize| (0..8).map(|k| pressures[(i + 32 - 4 + k) % 32]).sum::<f64>() / 8.0;
+    let local: Vec<f64> = (0..32).map(window).filter(|p| *p > 0.0).collect();
+    let force = |value: fn(&SampleRow) -> f64| {
+        local.iter().map(|p| p * between(&samples, *p, value)).sum::<f64>()
+    };
+    let ratio = force(|s| s.friction_finite_deformation) / force(|s| s.friction_half_space);
+    let friction = row.friction_coefficient.unwrap();
+    let expected = ratio * row.friction_half_space;
+    assert!((friction - expected).abs() < 0.01 * friction, "{friction} {expected}");
+    assert!((ratio - 1.0).abs() > 0.05, "a correction that matters: {ratio}");
 }
 
 #[test]

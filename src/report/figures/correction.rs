@@ -27,9 +27,8 @@ pub(super) fn correction(run: &RunView) -> Result<Option<Figure>, ReportError> {
     Ok(Some(Figure {
         caption:
             "The microscale over its mean pressure: friction at finite deformation and on the \
-                  half-space, their difference, which is the correction of a contact point with \
-                  bars for the estimated error by interpolation, and the resulting correction of \
-                  every realisation over its mean pressure."
+                  half-space, their difference with bars for the estimated error by interpolation, and \
+                  what it changes of the friction of every realisation, over its mean pressure."
                 .into(),
         panels,
     }))
@@ -98,9 +97,9 @@ fn difference(waves: u32, rows: &[&SampleRow]) -> Panel {
         ));
     }
     Panel {
-        title: format!("Correction of a contact point, {waves} waves"),
+        title: format!("Change by finite deformation, {waves} waves"),
         across: pressure(),
-        up: Axis::linear("correction of friction Δµ"),
+        up: Axis::linear("change of friction Δµ"),
         series,
     }
 }

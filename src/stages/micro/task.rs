@@ -194,7 +194,7 @@ impl Task {
         }
         curve.finish(&self.key(parameters, rubber))?;
         let mut warnings: Vec<String> = warning.into_iter().collect();
-        let odd = monotony::breaks(&samples);
+        let odd = monotony::breaks(&samples, self.columns(parameters));
         let (owners, speed_mm_s) = (self.owner_names(), self.speed_mm_s);
         warnings.extend(odd.map(|what| format!("{owners}, {speed_mm_s} mm/s: {what}")));
         Ok(TaskResult { samples, law: rows, warnings })
@@ -223,11 +223,15 @@ impl Task {
         Ok(largest)
     }
 
-    /// "8 and 9 waves", for messages.
+    /// "8 and 9 waves" or "8 waves, realisation 3", for messages.
     pub fn owner_names(&self) -> String {
         let mut counts: Vec<u32> = self.owners.iter().map(|owner| owner.waves).collect();
         counts.dedup();
         let counts: Vec<String> = counts.iter().map(u32::to_string).collect();
-        format!("{} waves", counts.join(" and "))
+        let waves = format!("{} waves", counts.join(" and "));
+        match self.owners.first().map(|owner| owner.realisation) {
+            None | Some(0) => waves,
+            Some(realisation) => format!("{waves}, realisation {realisation}"),
+        }
     }
 }

@@ -1,14 +1,26 @@
 //! How far the hybrid is from what it approximates.
 
-use super::{FEM, FrictionRow, HYBRID};
+use super::{Corrected, FEM, FrictionRow, HYBRID};
+use crate::stages::approximate::ScaleRow;
+use crate::stages::hybrid::Hybrid;
 
-/// Error of the hybrid where the run does not have all waves at finite deformation, as a share of friction: the
-/// largest of the averages that were measured on surfaces of eight waves, 0.249 (docs/all_waves.md).
-const MEASURED_ELSEWHERE: f64 = 0.25;
+/// Error of the hybrid where the run does not have all waves at finite deformation, as a share of friction, by the rms
+/// slope of the steepest wave that is left to the half-space: the largest of the averages that were measured on
+/// surfaces of eight waves with three, two and one waves in the microscale, and on the half-space alone
+/// (docs/hybrid.md).
+type Measured = [(f64, f64); 4];
+
+/// With the default rules of the correction.
+const BY_DEFAULT: Measured =
+    [(0.523, 0.085), (0.751, 0.097), (0.899, 0.174), (f64::INFINITY, 0.345)];
+
+/// The largest of all other rules.
+const BY_OTHER_RULES: Measured =
+    [(0.523, 0.171), (0.751, 0.220), (0.899, 0.279), (f64::INFINITY, 0.345)];
 
 /// Gives every average of the hybrid its model error, and the sum of its errors with it: the difference to all
 /// waves at finite deformation of the same realisations, or the share measured elsewhere.
-pub(super) fn add(rows: &mut [FrictionRow]) {
+pub(super) fn add(rows: &mut [FrictionRow], fitted: &[ScaleRow], corrected: Corrected) {
     let known: Vec<FrictionRow> = rows.iter().filter(|row| row.model == FEM).cloned().collect();
     for row in rows.iter_mut().filter(|row| row.model == HYBRID) {
         let same = known.iter().find(|fem| {
@@ -18,11 +30,21 @@ pub(super) fn add(rows: &mut [FrictionRow]) {
         });
         let error = match same {
             Some(fem) => (row.mean - fem.mean).abs() + fem.discretisation_error.unwrap_or(0.0),
-            None => MEASURED_ELSEWHERE * row.mean.abs(),
+            None => measured_elsewhere(row.waves, fitted, corrected) * row.mean.abs(),
         };
         row.model_error = Some(error);
         row.error_estimate = row.error_estimate.map(|others| others + error);
     }
+}
+
+/// The share of the measured surface whose steepest wave on the half-space is the next steeper one.
+fn measured_elsewhere(waves: u32, fitted: &[ScaleRow], corrected: Corrected) -> f64 {
+    let Corrected { rms_slope_threshold, rules } = corrected;
+    let slopes = fitted.iter().filter(|row| row.waves == waves).map(|row| row.rms_slope);
+    let steepest = slopes.filter(|slope| *slope <= rms_slope_threshold).fold(0.0, f64::max);
+    let measured = if rules == Hybrid::default() { BY_DEFAULT } else { BY_OTHER_RULES };
+    let [.., half_space] = measured;
+    measured.into_iter().find(|(slope, _)| steepest <= *slope).unwrap_or(half_space).1
 }
 
 #[cfg(test)]
@@ -30,6 +52,7 @@ mod tests {
     use super::super::tests::curve;
     use super::super::{BEM, average};
     use super::*;
+    use crate::multiscale::correction::MeanRule;
 
     #[test]
     fn the_difference_of_this_run_counts_and_elsewhere_the_measured_share() {
@@ -41,14 +64,48 @@ mod tests {
         rows.extend(average(FEM, values(0.8, &[0.05])));
         rows.extend(average(BEM, values(1.1, &[0.05])));
         let before = rows.clone();
-        add(&mut rows);
+        let scale = |wavelength_mm, rms_slope| ScaleRow {
+            waves: 8,
+            scale: 0,
+            wavelength_mm,
+            amplitude_mm: 0.1,
+            amplitude_confidence_95_mm: None,
+            rms_slope,
+        };
+        let fitted = [scale(0.1, 1.4), scale(0.2, 0.8), scale(0.4, 0.3)];
+        let corrected = Corrected { rms_slope_threshold: 1.0, rules: Hybrid::default() };
+        add(&mut rows, &fitted, corrected);
         // The mesh error of a value is a two thousandth of it.
         approx::assert_relative_eq!(rows[0].model_error.unwrap(), 0.2 + 4e-4, max_relative = 1e-12);
-        assert_eq!(rows[1].model_error, Some(MEASURED_ELSEWHERE));
+        assert_eq!(rows[1].model_error, Some(measured_elsewhere(8, &fitted, corrected)));
         for (row, before) in rows.iter().zip(&before).take(2) {
             let sum = before.error_estimate.unwrap() + row.model_error.unwrap();
             assert_eq!(row.error_estimate, Some(sum));
         }
         assert_eq!(rows[2..], before[2..]);
+    }
+
+    #[test]
+    fn the_steeper_the_wave_on_the_half_space_the_larger_the_error() {
+        let scale = |waves, rms_slope| ScaleRow {
+            waves,
+            scale: 0,
+            wavelength_mm: 0.1,
+            amplitude_mm: 0.1,
+            amplitude_confidence_95_mm: None,
+            rms_slope,
+        };
+        let fitted = [scale(8, 1.4), scale(8, 0.8), scale(8, 0.3), scale(9, 0.85)];
+        let by = |rms_slope_threshold, rules| {
+            measured_elsewhere(8, &fitted, Corrected { rms_slope_threshold, rules })
+        };
+        let share = |threshold| by(threshold, Hybrid::default());
+        let shares = [0.3, 0.8, 1.4].map(share);
+        assert!(shares.is_sorted() && shares[0] < shares[1] && shares[1] < shares[2], "{shares:?}");
+        // A slope equal to the threshold is left to the half-space.
+        assert_eq!(share(0.2), share(0.3));
+        assert_eq!(share(0.79), share(0.3));
+        let plain = Hybrid { mean: MeanRule::Points, ..Hybrid::default() };
+        assert!(by(0.8, plain) > share(0.8));
     }
 }

@@ -261,7 +261,7 @@ fn compare_corrections(
     for line in lines::<Line>(&published.file)? {
         let pressure = line.pressure_mpa * 1e6;
         let Some((half_space, finite)) = microscale.friction(pressure) else { continue };
-        let mesh = microscale.correction(&[pressure]).ok();
+        let mesh = microscale.correction(&[pressure]).ok().flatten();
         compared.push(CorrectionRow {
             published_table: published.name.clone(),
             waves: published.waves,
