@@ -8,8 +8,9 @@ use asperity::fem::profile::RigidProfile;
 use asperity::fem::steady::solution::SteadySolution;
 use asperity::fem::steady::{BlockOptions, SteadyContact};
 use asperity::fem::transient::{TransientContact, TransientOptions};
+use asperity::reference::FullContact;
 use asperity::rubber::{MaxwellBranch, Rheology, Rubber};
-use asperity::surface::Wave;
+use asperity::surface::{SineScale, Wave};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -87,6 +88,25 @@ fn more_columns_refine_the_mesh_at_every_depth() {
         (solution.friction_coefficient / exact - 1.0).abs()
     });
     assert!(errors[0] < 2e-3 && errors[1] < 0.6 * errors[0], "{errors:?}");
+}
+
+/// Eight decades of speed, over which branches go from following at once to not at all: the stress of those that
+/// follow at once must not come from differences of strains of order one.
+#[test]
+fn full_contact_of_a_tiny_slope_is_exact_over_eight_decades_of_speed() {
+    // A slope of 1e-6.
+    let (amplitude, pressure) = (1e-6 * PERIOD / std::f64::consts::TAU, 1e4);
+    let rubber = table_2_1();
+    for speed in [1e-6, 1e-4, 0.01, 1.0, 100.0] {
+        let wave = SineScale { wavelength: PERIOD, amplitude };
+        let half_space = FullContact { rubber: &rubber, wave, speed };
+        let exact = half_space.friction_coefficient(pressure).unwrap();
+        let options = BlockOptions::of_profile(128, &sine(amplitude));
+        let solution = contact(&rubber, speed, amplitude, options).solve(pressure).unwrap();
+        assert_solved(&solution);
+        // The elements of this mesh, the same at each speed.
+        assert_relative_eq!(solution.friction_coefficient, exact, max_relative = 1.5e-3);
+    }
 }
 
 /// On a flat profile every node carries its share, at any height of the pressure.
