@@ -53,6 +53,17 @@ dependencies() {
     "$python" scripts/check_third_party.py
 }
 
+# The mechanics by themselves: few crates, no C library.
+mechanics_alone() {
+    local tree
+    tree=$(cargo tree --locked --package asperity-core --edges normal --prefix none --no-dedupe | sort -u)
+    printf 'crates/core: %d crates\n' "$(wc -l <<<"$tree")"
+    if grep -E 'hdf5|-sys v' <<<"$tree"; then
+        return 1
+    fi
+    (($(wc -l <<<"$tree") <= 130))
+}
+
 documentation() {
     RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --no-deps
 }

@@ -111,7 +111,7 @@ def check_other_links():
 
 
 def code_of_tests():
-    files = [path for folder in ("src", "tests") for path in (ROOT / folder).rglob("*.rs")]
+    files = [path for folder in ("src", "tests", "crates") for path in (ROOT / folder).rglob("*.rs")]
     return "\n".join(path.read_text(encoding="utf-8") for path in files)
 
 

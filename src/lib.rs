@@ -21,12 +21,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Mechanics and roughness**, numbers in, numbers out:
+//! **Mechanics and roughness**, numbers in, numbers out, a crate of their own (`crates/core`):
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
-//! | [`rubber`] | generalised Maxwell model, its file, its fit to measured moduli |
+//! | [`rubber`] | generalised Maxwell model, its fit to measured moduli; here with its file |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
@@ -34,17 +34,20 @@
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`numerics`] | mathematics without physics: Krylov, interpolation, statistics |
 //!
-//! **Files and results**:
+//! **Files and results**, the lowest first; each module imports from those above it in this table alone:
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`scans`] | readers of instrument files: bytes in, scan or error out |
+//! | [`files`] (`crates/files`) | files that a user gives: read whole, or refused with what to do |
+//! | [`scans`] (`crates/scans`) | readers of instrument files and of measured sweeps: bytes in, numbers or error out |
+//! | [`requirement`] | what the keys of a recipe must hold |
+//! | [`plot`] | figures as descriptions, drawn all alike |
 //! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
 //! | [`stages`] | one file a stage: parameters, row types, one function |
 //! | [`recipe`] | the TOML file that says what a run does |
+//! | [`report`] | tables and figures for people |
 //! | [`pipeline`] | the one function that wires the stages |
 //! | [`sweep`] | the cases of a recipe, spread over many machines |
-//! | [`report`] | tables and figures for people |
 //!
 //! The rest (`cli`, `bench`, `forecast`, `schemas`) is the program, public for its own binary, tests and benchmarks.
 //!
@@ -54,29 +57,29 @@
 //! positive in compression; a positive friction coefficient opposes the motion. Missing heights
 //! are NaN and nothing else is.
 
+pub use asperity_core::{
+    contact, error_kind, fem, multiscale, numerics, reference, surface, theory,
+};
+pub use asperity_files as files;
+pub use asperity_scans as scans;
+
 pub mod artifact;
 #[doc(hidden)]
 pub mod bench;
 #[doc(hidden)]
 pub mod cli;
-pub mod contact;
-pub mod error_kind;
-pub mod fem;
-pub mod files;
 #[doc(hidden)]
 pub mod forecast;
-pub mod multiscale;
-pub mod numerics;
+#[cfg(test)]
+mod layers;
 pub mod pipeline;
+pub mod plot;
 pub mod recipe;
-pub mod reference;
 pub mod report;
+pub mod requirement;
 pub mod rubber;
-pub mod scans;
 #[doc(hidden)]
 pub mod schemas;
 pub mod stages;
-pub mod surface;
 pub mod sweep;
 mod text;
-pub mod theory;

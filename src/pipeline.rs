@@ -8,7 +8,8 @@ use crate::artifact::{
 };
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
-use crate::recipe::{Recipe, Violation, Work};
+use crate::recipe::{Recipe, Work};
+use crate::requirement::InvalidRecipe;
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
     Context, Stage, StageError, Watch, approximate, bem, characterise, fem, hybrid, ingest, micro,
@@ -74,7 +75,7 @@ pub enum PipelineError {
     },
     /// Sections of the recipe that do not go together.
     #[error(transparent)]
-    Recipe(#[from] Violation),
+    Recipe(#[from] InvalidRecipe),
     /// A selected stage that the recipe does not have.
     #[error("the recipe has no stage {selected}: it has {}", .stages.join(", "))]
     NoSuchStage {
@@ -235,8 +236,8 @@ pub fn check(recipe: &Recipe, scans: &[ScanFile]) -> Result<(), PipelineError> {
 /// The stages of a recipe, in the order of the data.
 ///
 /// # Errors
-/// [`Violation`] for a recipe that is none.
-pub fn stages(recipe: &Recipe) -> Result<Vec<Stage>, Violation> {
+/// [`InvalidRecipe`] for a recipe that is none.
+pub fn stages(recipe: &Recipe) -> Result<Vec<Stage>, InvalidRecipe> {
     Ok(plan::stages(recipe.work()?))
 }
 

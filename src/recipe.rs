@@ -4,12 +4,12 @@ mod error;
 mod hints;
 mod sweep;
 
-pub(crate) use error::demand;
-pub use error::{RecipeError, Violation};
+pub use error::RecipeError;
 pub use sweep::{Case, Specimen, Sweep};
 
 use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::files::{self, TomlError};
+use crate::requirement::{InvalidRecipe, require};
 use crate::stages::{
     approximate::Approximate,
     bem::Bem,
@@ -170,24 +170,24 @@ impl Recipe {
     }
 
     /// Hands the wanted accuracy to the stages, unless some of them have one of their own.
-    fn share_tolerance(&mut self) -> Result<(), Violation> {
+    fn share_tolerance(&mut self) -> Result<(), InvalidRecipe> {
         let Some(tolerance) = self.tolerance else { return Ok(()) };
         let own = self.bem.as_ref().is_some_and(|bem| {
             [bem.tolerance, bem.grid_tolerance, bem.average_tolerance].iter().any(Option::is_some)
         });
         let alone = "given alone: leave out bem.tolerance, bem.grid_tolerance and bem.average_tolerance, which follow from it";
-        demand(!own, "tolerance", tolerance, alone)?;
+        require(!own, "tolerance", tolerance, alone)?;
         self.set_tolerance(tolerance)
     }
 
     /// Asks for a relative accuracy of the averaged friction, whatever the recipe asks for.
     ///
     /// # Errors
-    /// [`Violation::Demand`] for one outside [`TOLERANCES`], and for the study of one sine.
-    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Violation> {
-        demand(TOLERANCES.contains(&tolerance), "tolerance", tolerance, TOLERANCES_IN_WORDS)?;
+    /// [`InvalidRecipe::Value`] for one outside [`TOLERANCES`], and for the study of one sine.
+    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), InvalidRecipe> {
+        require(TOLERANCES.contains(&tolerance), "tolerance", tolerance, TOLERANCES_IN_WORDS)?;
         let chain = self.sinusoid.is_none();
-        demand(
+        require(
             chain,
             "tolerance",
             tolerance,
@@ -255,11 +255,11 @@ impl Recipe {
     /// What the recipe asks for.
     ///
     /// # Errors
-    /// [`Violation::MissingSection`], [`Violation::SectionBesideSinusoid`],
-    /// [`Violation::SeveralCases`].
-    pub fn work(&self) -> Result<Work<'_>, Violation> {
+    /// [`InvalidRecipe::MissingSection`], [`InvalidRecipe::SectionBesideSinusoid`],
+    /// [`InvalidRecipe::SeveralCases`].
+    pub fn work(&self) -> Result<Work<'_>, InvalidRecipe> {
         if self.sweep.is_some() && self.sinusoid.is_none() {
-            return Err(Violation::SeveralCases { cases: self.cases()?.len() });
+            return Err(InvalidRecipe::SeveralCases { cases: self.cases()?.len() });
         }
         let Some(sinusoid) = &self.sinusoid else {
             return self.chain().map(Work::Chain);
@@ -278,15 +278,15 @@ impl Recipe {
             ("sweep", self.sweep.is_some()),
         ];
         match others.into_iter().find(|(_, present)| *present) {
-            Some((section, _)) => Err(Violation::SectionBesideSinusoid { section }),
+            Some((section, _)) => Err(InvalidRecipe::SectionBesideSinusoid { section }),
             None => Ok(Work::Sinusoid(sinusoid)),
         }
     }
 
-    fn chain(&self) -> Result<Chain<'_>, Violation> {
-        let missing = |section| Violation::MissingSection { section };
+    fn chain(&self) -> Result<Chain<'_>, InvalidRecipe> {
+        let missing = |section| InvalidRecipe::MissingSection { section };
         if self.hybrid.is_some() && self.micro.is_none() {
-            return Err(Violation::HybridWithoutMicro);
+            return Err(InvalidRecipe::HybridWithoutMicro);
         }
         Ok(Chain {
             ingest: self.ingest.as_ref(),
@@ -302,7 +302,7 @@ impl Recipe {
         })
     }
 
-    fn check(&self) -> Result<(), Violation> {
+    fn check(&self) -> Result<(), InvalidRecipe> {
         self.check_sweep()?;
         if self.sweep.is_some() && self.sinusoid.is_none() {
             // All cases are checked by what they have in common.
@@ -316,7 +316,7 @@ impl Recipe {
 }
 
 impl Chain<'_> {
-    fn check(&self) -> Result<(), Violation> {
+    fn check(&self) -> Result<(), InvalidRecipe> {
         self.ingest.map_or(Ok(()), Ingest::check)?;
         self.characterise.check()?;
         self.approximate.check()?;
@@ -327,21 +327,21 @@ impl Chain<'_> {
         self.multilevel.map_or(Ok(()), Multilevel::check)?;
         self.tables.check()?;
         let limit = self.realise.most_realisations.unwrap_or(0);
-        demand(
+        require(
             limit == 0 || self.bem.average_tolerance.is_some(),
             "realise.most_realisations",
             limit,
             "left out without `tolerance`, which it limits: set realise.realisations",
         )?;
         let (scans, given) = (self.ingest.is_some(), !self.approximate.given.is_empty());
-        demand(
+        require(
             scans != given && (!given || self.approximate.waves.is_empty()),
             "approximate.given",
             self.approximate.given.len(),
             "given without [ingest] and approximate.waves, or left out with both",
         )?;
         if let Some(fem) = self.fem {
-            demand(
+            require(
                 fem.waves.iter().all(|waves| self.realise.waves.contains(waves)),
                 "fem.waves",
                 &fem.waves,
@@ -349,7 +349,7 @@ impl Chain<'_> {
             )?;
         }
         if let Some(published) = self.tables.published_corrections.first() {
-            demand(
+            require(
                 self.micro.is_some(),
                 "tables.published_corrections",
                 &published.name,
@@ -357,7 +357,7 @@ impl Chain<'_> {
             )?;
         }
         let fitted = self.approximate.numbers();
-        demand(
+        require(
             self.realise.waves.iter().all(|waves| fitted.contains(waves)),
             "realise.waves",
             &self.realise.waves,

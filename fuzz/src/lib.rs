@@ -1,19 +1,6 @@
-//! The readers of scans, compiled from the sources of the project without the rest of it: a
-//! fuzzer instruments all that it links, and solvers and tables would take minutes for nothing.
+//! What the fuzz targets share: bytes read as a scan, within the memory that the readers promise.
 
-#[path = "../../src/error_kind.rs"]
-pub mod error_kind;
-#[path = "../../src/files/mod.rs"]
-pub mod files;
-#[path = "../../src/surface/scan.rs"]
-mod scan;
-#[path = "../../src/scans/mod.rs"]
-pub mod scans;
-
-/// What the readers use of `asperity::surface`.
-pub mod surface {
-    pub use super::scan::{LineScan, RawScan};
-}
+pub use asperity_scans as scans;
 
 /// Counts what is allocated: a reader is to take no more than the promise of its module.
 #[global_allocator]

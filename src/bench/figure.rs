@@ -1,8 +1,7 @@
 //! Error against seconds, in SVG.
 
 use super::{CaseResult, Line};
-use crate::report::FigureError;
-use crate::report::figure::{COLOURS, FONT};
+use crate::plot::{COLOURS, FONT, FigureError};
 use plotters::prelude::*;
 use std::ops::Range;
 

@@ -13,6 +13,7 @@ use crate::rubber::fit::{
     DescribedColumn, FitError, FitOptions, LeftOut, MasterCurve, ModulusKind, ReducedPoint,
     SweepTable, TableOptions, VerticalChoice, doubts, fit_sweeps, read_shift_factors, read_sweeps,
 };
+use crate::rubber::to_toml;
 use crate::scans::description::{DecimalMark, Separator};
 use summary::Summary;
 
@@ -52,6 +53,24 @@ pub(super) enum Rubber {
     Fit(Fit),
 }
 
+/// Which modulus was measured.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Kind {
+    /// Young's modulus E: tension, compression, bending.
+    Youngs,
+    /// Shear modulus G: torsion, shear; becomes `E = 2 (1 + ν) G`.
+    Shear,
+}
+
+impl From<Kind> for ModulusKind {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Youngs => Self::Youngs,
+            Kind::Shear => Self::Shear,
+        }
+    }
+}
+
 /// Fit a rubber to storage and loss moduli over frequency, at one or several temperatures.
 ///
 /// The file is text or an .xlsx workbook with a header that names quantities and units, such as
@@ -67,7 +86,7 @@ pub(super) struct Fit {
     sweep: PathBuf,
     /// Which modulus was measured; never guessed.
     #[arg(long, value_name = "KIND")]
-    kind: ModulusKind,
+    kind: Kind,
     /// Poisson ratio of the rubber, 0 to 0.5; also makes Young's modulus of shear: E = 2 (1 + nu) G.
     #[arg(long, value_name = "NU", default_value = "0.49", value_parser = values::finite, allow_negative_numbers = true)]
     poisson_ratio: f64,
@@ -154,9 +173,10 @@ impl Fit {
         self.check()?;
         refuse_existing(Some(&self.to), self.force)?;
         refuse_existing(self.plot.as_deref(), self.force)?;
-        let factor = self.kind.factor(self.poisson_ratio);
+        let kind = ModulusKind::from(self.kind);
+        let factor = kind.factor(self.poisson_ratio);
         let table = read_sweeps(&self.sweep, &self.table(), factor)?;
-        let doubts = doubts(&table, self.kind);
+        let doubts = doubts(&table, kind);
         let fit = fit_sweeps(&table.sweeps, &self.options()?);
         let fit = fit.map_err(|error| self.refusal(error, &doubts))?;
         self.tell(&table, &doubts, quiet);
@@ -164,7 +184,7 @@ impl Fit {
             note(quiet, format_args!("warning: {warning}"));
         }
         let source = source(&self.sweep, &fit);
-        let text = fit.rubber(&self.name(), self.poisson_ratio).to_toml(&source);
+        let text = to_toml(&fit.rubber(&self.name(), self.poisson_ratio), &source);
         let svg = self.plot.as_ref().map(|_| rubber_figure(&fit)).transpose();
         let svg = svg.map_err(CliError::failure)?;
         write_file(&self.to, self.force, |out| out.write_all(text.as_bytes()))?;

@@ -20,7 +20,8 @@ use crate::artifact::{ArtifactError, RunView, SolveStore};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
 use crate::pipeline::{self, PipelineError, Selection};
-use crate::recipe::{Chain, Recipe, Violation, Work};
+use crate::recipe::{Chain, Recipe, Work};
+use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages::bem::{
     self, CURVES_FILE, CurveRow, FIRST_REALISATIONS, SOLVES_FILE, SolveRow, realisations_needed,
@@ -55,7 +56,7 @@ pub enum ForecastError {
     Folder(std::io::Error),
     /// The recipe.
     #[error(transparent)]
-    Recipe(#[from] Violation),
+    Recipe(#[from] InvalidRecipe),
     /// The study of one sine wave has no scales to choose models for.
     #[error("[sinusoid] solves what it lists, with the models it lists: there is nothing to plan")]
     Sinusoid,

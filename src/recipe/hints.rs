@@ -1,6 +1,6 @@
 //! Where a mistake stands in a recipe, and what was typed there.
 
-use super::Violation;
+use crate::requirement::InvalidRecipe;
 use crate::scans::ScanProblem;
 use crate::surface::ConditioningError;
 use toml::Spanned;
@@ -11,7 +11,7 @@ const LONGEST_VALUE: usize = 80;
 
 /// Number of the line that a violation speaks of, from 1, and the value there as it was typed; none where the
 /// recipe has no such key and the value is that of a default.
-pub(super) fn place(text: &str, violation: &Violation) -> (Option<usize>, Option<String>) {
+pub(super) fn place(text: &str, violation: &InvalidRecipe) -> (Option<usize>, Option<String>) {
     let found = DeTable::parse(text).ok().and_then(|document| {
         let key = key(violation)?;
         let start = start(document.get_ref(), &key)?;
@@ -22,22 +22,22 @@ pub(super) fn place(text: &str, violation: &Violation) -> (Option<usize>, Option
 }
 
 /// The key of a violation with its section.
-fn key(violation: &Violation) -> Option<String> {
+fn key(violation: &InvalidRecipe) -> Option<String> {
     let key = match violation {
-        Violation::Demand { key, .. } => *key,
-        Violation::SectionBesideSinusoid { section } => *section,
-        Violation::HybridWithoutMicro => "hybrid",
-        Violation::Text(ScanProblem::Description { key, .. }) => {
+        InvalidRecipe::Value { key, .. } => *key,
+        InvalidRecipe::SectionBesideSinusoid { section } => *section,
+        InvalidRecipe::HybridWithoutMicro => "hybrid",
+        InvalidRecipe::Text(ScanProblem::Description { key, .. }) => {
             return Some(format!("ingest.text.{key}"));
         }
-        Violation::Text(_) => "ingest.text",
-        Violation::Conditioning(ConditioningError::Parameter { key, .. }) => {
+        InvalidRecipe::Text(_) => "ingest.text",
+        InvalidRecipe::Conditioning(ConditioningError::Parameter { key, .. }) => {
             return Some(format!("ingest.conditioning.{key}"));
         }
-        Violation::Conditioning(_) => "ingest.conditioning",
-        Violation::SeveralCases { .. } | Violation::SweepOfSinusoid => "sweep",
-        Violation::Missing { key, .. } => *key,
-        Violation::MissingSection { .. } => return None,
+        InvalidRecipe::Conditioning(_) => "ingest.conditioning",
+        InvalidRecipe::SeveralCases { .. } | InvalidRecipe::SweepOfSinusoid => "sweep",
+        InvalidRecipe::Missing { key, .. } => *key,
+        InvalidRecipe::MissingSection { .. } => return None,
     };
     Some(key.to_owned())
 }
@@ -88,32 +88,33 @@ mod tests {
     const RECIPE: &str = "title = 'x'\n\n[bem]\nrubber = 'r'\nspeeds_mm_s = [\n    1.0,\n]\n\n\
                           [ingest]\nconditioning.form = 'mean'\ntext = { x_unit = 'mm' }\n";
 
-    fn line(violation: &Violation) -> Option<usize> {
+    fn line(violation: &InvalidRecipe) -> Option<usize> {
         place(RECIPE, violation).0
     }
 
-    fn demand(key: &'static str) -> Option<usize> {
-        line(&Violation::Demand { key, value: String::new(), demand: "" })
+    fn line_of(key: &'static str) -> Option<usize> {
+        line(&InvalidRecipe::Value { key, value: String::new(), required: "" })
     }
 
     #[test]
     fn keys_are_found_however_they_are_written() {
-        assert_eq!(demand("title"), Some(1));
-        assert_eq!(demand("bem"), Some(3));
-        assert_eq!(demand("bem.speeds_mm_s"), Some(5));
-        assert_eq!(demand("ingest.conditioning.form"), Some(10));
-        assert_eq!(demand("ingest.text.x_unit"), Some(11));
-        assert_eq!(demand("bem.(tolerance, speeds_mm_s, rubber)"), Some(4));
+        assert_eq!(line_of("title"), Some(1));
+        assert_eq!(line_of("bem"), Some(3));
+        assert_eq!(line_of("bem.speeds_mm_s"), Some(5));
+        assert_eq!(line_of("ingest.conditioning.form"), Some(10));
+        assert_eq!(line_of("ingest.text.x_unit"), Some(11));
+        assert_eq!(line_of("bem.(tolerance, speeds_mm_s, rubber)"), Some(4));
         // Keys that are not there are missed in their section.
-        assert_eq!(demand("bem.tolerance"), Some(3));
-        assert_eq!(demand("realise.seed"), None);
-        let typed =
-            |key| place(RECIPE, &Violation::Demand { key, value: String::new(), demand: "" }).1;
+        assert_eq!(line_of("bem.tolerance"), Some(3));
+        assert_eq!(line_of("realise.seed"), None);
+        let typed = |key| {
+            place(RECIPE, &InvalidRecipe::Value { key, value: String::new(), required: "" }).1
+        };
         assert_eq!(typed("bem.speeds_mm_s").as_deref(), Some("[ 1.0, ]"));
         assert_eq!(typed("ingest.text.x_unit").as_deref(), Some("'mm'"));
         assert_eq!(typed("bem"), None);
-        assert_eq!(line(&Violation::MissingSection { section: "realise" }), None);
-        let beside = Violation::SectionBesideSinusoid { section: "bem" };
+        assert_eq!(line(&InvalidRecipe::MissingSection { section: "realise" }), None);
+        let beside = InvalidRecipe::SectionBesideSinusoid { section: "bem" };
         assert_eq!(line(&beside), Some(3));
     }
 }

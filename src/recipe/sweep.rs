@@ -1,6 +1,7 @@
 //! Section `[sweep]`: lists in place of single values, and the cases that they make.
 
-use super::{Recipe, Violation, demand};
+use super::Recipe;
+use crate::requirement::{InvalidRecipe, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -69,26 +70,26 @@ impl Sweep {
         }
     }
 
-    fn check(&self) -> Result<(), Violation> {
+    fn check(&self) -> Result<(), InvalidRecipe> {
         let names: Vec<&str> =
             self.specimens.iter().map(|specimen| specimen.name.as_str()).collect();
         let named = "names of letters, digits, `.`, `_` and `-`, 100 at most, each once: they become folders";
-        demand(are_names(&names), "sweep.specimens.name", &names, named)?;
+        require(are_names(&names), "sweep.specimens.name", &names, named)?;
         let scans = self.specimens.iter().all(|specimen| !specimen.scans.is_empty());
-        demand(scans, "sweep.specimens", &names, "specimens with one scan or more each")?;
+        require(scans, "sweep.specimens", &names, "specimens with one scan or more each")?;
         let rubbers: Vec<String> = self.rubbers.iter().map(|path| stem(path)).collect();
         let rubbers: Vec<&str> = rubbers.iter().map(String::as_str).collect();
         let named = "file names of letters, digits, `.`, `_` and `-`, 100 at most, each once: they name tables and folders";
-        demand(are_names(&rubbers), "sweep.rubbers", &rubbers, named)?;
+        require(are_names(&rubbers), "sweep.rubbers", &rubbers, named)?;
         let temperatures = &self.temperatures_c;
         let valid = temperatures.iter().all(|t| t.is_finite()) && once(temperatures);
-        demand(valid, "sweep.temperatures_c", temperatures, "finite numbers, each once")?;
+        require(valid, "sweep.temperatures_c", temperatures, "finite numbers, each once")?;
         let seeds = &self.seeds;
         let valid = seeds.iter().all(|seed| *seed < 1 << 63) && once(seeds);
-        demand(valid, "sweep.seeds", seeds, "numbers below 2^63, each once")?;
+        require(valid, "sweep.seeds", seeds, "numbers below 2^63, each once")?;
         let cases = self.count();
         let least = "one list or more, and a million cases at most";
-        demand(
+        require(
             (1..=MOST_CASES).contains(&cases) && *self != Self::default(),
             "sweep",
             format_args!("{cases} cases"),
@@ -114,10 +115,10 @@ impl Recipe {
     /// seeds fastest; the recipe itself where it has none.
     ///
     /// # Errors
-    /// [`Violation`] for lists that do not hold, and for the study of one sine.
-    pub fn cases(&self) -> Result<Vec<Case>, Violation> {
+    /// [`InvalidRecipe`] for lists that do not hold, and for the study of one sine.
+    pub fn cases(&self) -> Result<Vec<Case>, InvalidRecipe> {
         if self.sinusoid.is_some() {
-            return Err(Violation::SweepOfSinusoid);
+            return Err(InvalidRecipe::SweepOfSinusoid);
         }
         let sweep = self.sweep.clone().unwrap_or_default();
         let mut cases = Vec::with_capacity(sweep.count());
@@ -139,9 +140,9 @@ impl Recipe {
         rubber: Option<&PathBuf>,
         temperature_c: Option<&f64>,
         seed: Option<&u64>,
-    ) -> Result<Case, Violation> {
+    ) -> Result<Case, InvalidRecipe> {
         let mut recipe = Self { sweep: None, ..self.clone() };
-        let missing = |section| Violation::MissingSection { section };
+        let missing = |section| InvalidRecipe::MissingSection { section };
         if let Some(specimen) = specimen {
             let ingest = recipe.ingest.as_mut().ok_or(missing("ingest"))?;
             ingest.scans.clone_from(&specimen.scans);
@@ -172,20 +173,20 @@ impl Recipe {
     }
 
     /// Fails for lists that do not hold, and for a value that stands both in a list and in its own place.
-    pub(super) fn check_sweep(&self) -> Result<(), Violation> {
+    pub(super) fn check_sweep(&self) -> Result<(), InvalidRecipe> {
         let sweep = self.sweep.clone().unwrap_or_default();
         if self.sweep.is_some() {
             sweep.check()?;
         }
         let either = |listed: bool, single: bool, key, list| match (listed, single) {
-            (false, false) => Err(Violation::Missing { key, advice: list }),
-            (true, true) => demand(false, key, "given", "left out beside the list in [sweep]"),
+            (false, false) => Err(InvalidRecipe::Missing { key, advice: list }),
+            (true, true) => require(false, key, "given", "left out beside the list in [sweep]"),
             _ => Ok(()),
         };
         if let Some(ingest) = &self.ingest {
             // None at all may still come from the command line.
             let both = !sweep.specimens.is_empty() && !ingest.scans.is_empty();
-            demand(!both, "ingest.scans", &ingest.scans, "left out beside sweep.specimens")?;
+            require(!both, "ingest.scans", &ingest.scans, "left out beside sweep.specimens")?;
         }
         if let Some(bem) = &self.bem {
             let listed = !sweep.rubbers.is_empty();
@@ -193,7 +194,7 @@ impl Recipe {
             either(listed, bem.rubber != Path::new(""), "bem.rubber", wanted)?;
             let both = !sweep.temperatures_c.is_empty() && bem.temperature_c.is_some();
             let wanted = "left out beside sweep.temperatures_c";
-            demand(!both, "bem.temperature_c", bem.temperature_c, wanted)?;
+            require(!both, "bem.temperature_c", bem.temperature_c, wanted)?;
         }
         if let Some(realise) = &self.realise {
             let wanted =

@@ -1,32 +1,10 @@
 //! Figures in SVG.
 
 use super::FrictionTable;
-use crate::error_kind::{ErrorKind, HasKind};
+use crate::plot::{COLOURS, FONT, FigureError};
 use plotters::prelude::*;
 
-/// A figure that could not be drawn.
-#[derive(Debug, thiserror::Error)]
-#[error("the figure could not be drawn: {0}")]
-pub struct FigureError(pub(crate) String);
-
-impl HasKind for FigureError {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::Failure
-    }
-}
-
-/// Distinct for readers who do not see all colours (Okabe & Ito).
-pub(crate) const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-];
-
 const SIZE: (u32, u32) = (900, 560);
-pub(crate) const FONT: &str = "sans-serif";
 
 /// Friction over contact area: for each table the average as a line and the 95 % confidence
 /// interval of the mean as a band. Returns the SVG.

@@ -1,9 +1,8 @@
 //! Friction tables, figures and the report of a run, for people.
 
-pub(crate) mod figure;
+mod figure;
 pub mod figures;
 pub mod html;
-pub mod plot;
 mod read;
 mod rubber_figure;
 mod sinusoid;
@@ -11,7 +10,7 @@ mod sinusoid_figure;
 mod spreadsheet;
 mod tables;
 
-pub use figure::{FigureError, friction_figure};
+pub use figure::friction_figure;
 pub use read::ReportError;
 pub use rubber_figure::rubber_figure;
 pub use sinusoid::Study;

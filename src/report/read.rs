@@ -1,8 +1,8 @@
 //! What figures and reports read of a run.
 
-use super::FigureError;
 use crate::artifact::{ArtifactError, Metadata, Row, RunView};
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::plot::FigureError;
 use crate::stages::StageError;
 
 /// A figure or a report that cannot be made.

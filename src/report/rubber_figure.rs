@@ -1,6 +1,6 @@
 //! Measured and fitted moduli over frequency, and the shift factors, in SVG.
 
-use super::figure::{COLOURS, FONT, FigureError};
+use crate::plot::{COLOURS, FONT, FigureError};
 use crate::rubber::fit::{MasterCurve, ReducedPoint};
 use crate::rubber::{Rubber, ShiftLaw};
 use plotters::coord::Shift;

@@ -1,7 +1,7 @@
 //! Friction and contact area of the study of one sine wave, in SVG.
 
-use super::figure::{COLOURS, FONT, FigureError};
 use super::sinusoid::Study;
+use crate::plot::{COLOURS, FONT, FigureError};
 use crate::stages::sinusoid::{Model, PointRow};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;

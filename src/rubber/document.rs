@@ -1,59 +1,56 @@
 //! A rubber as the text of its file.
 
-use super::{RubberData, ShiftLaw, VerticalShift};
+use asperity_core::rubber::{RubberData, ShiftLaw, VerticalShift};
 
-impl RubberData {
-    /// The TOML that [`read_rubber_data`](super::read_rubber_data) reads, numbers with seven
-    /// significant digits.
-    pub fn to_toml(&self, source: &str) -> String {
-        let rubber = &self.rubber;
-        let text = |text: &str| toml::Value::String(text.into()).to_string();
-        let mut lines = vec![
-            "# A generalised Maxwell model,".into(),
-            "# E(w) = equilibrium_modulus + sum_k modulus_k i w tau_k / (1 + i w tau_k).".into(),
-            format!("name = {}", text(&rubber.name)),
-            format!("source = {}", text(source)),
-            format!("equilibrium_modulus_mpa = {:.6e}", rubber.equilibrium_modulus / 1e6),
-            format!("poisson_ratio = {}", rubber.poisson_ratio),
-        ];
-        if let Some(range) = &self.measured {
-            lines.push("# Frequencies of the measurement, at the reference temperature.".into());
-            lines
-                .push(format!("measured_hz = [{:.6e}, {:.6e}]", range.lowest_hz, range.highest_hz));
-        }
-        if let Some(temperature) = &self.temperature {
-            lines.push("\n[temperature]".into());
-            lines.push(format!("reference_c = {:?}", temperature.reference_c));
-            if let Some([lowest, highest]) = temperature.measured_c {
-                lines.push(format!("measured_c = [{lowest:?}, {highest:?}]"));
-            }
-            lines.push(match temperature.law {
-                ShiftLaw::Wlf { c1, c2_k } => {
-                    format!("wlf = {{ c1 = {c1:.6e}, c2_k = {c2_k:.6e} }}")
-                }
-                ShiftLaw::Arrhenius { activation_energy_kj_mol: energy } => {
-                    format!("arrhenius = {{ activation_energy_kj_mol = {energy:.6e} }}")
-                }
-            });
-        }
-        if let Some(vertical) = self.temperature.and_then(|temperature| temperature.vertical) {
-            lines.push("# Factor of all moduli at another temperature.".into());
-            lines.push(match vertical {
-                VerticalShift::RhoT { expansion_per_k } => {
-                    format!("vertical = {{ rho_t = {{ expansion_per_k = {expansion_per_k:e} }} }}")
-                }
-                VerticalShift::Power { exponent } => {
-                    format!("vertical = {{ power = {{ exponent = {exponent:.6e} }} }}")
-                }
-            });
-        }
-        for branch in &rubber.branches {
-            lines.push("\n[[branches]]".into());
-            lines.push(format!("modulus_mpa = {:.6e}", branch.modulus / 1e6));
-            lines.push(format!("relaxation_time_s = {:.6e}", branch.relaxation_time));
-        }
-        lines.join("\n") + "\n"
+/// A rubber as the TOML that [`read_rubber_data`](super::read_rubber_data) reads, numbers with seven
+/// significant digits.
+pub fn to_toml(data: &RubberData, source: &str) -> String {
+    let rubber = &data.rubber;
+    let text = |text: &str| toml::Value::String(text.into()).to_string();
+    let mut lines = vec![
+        "# A generalised Maxwell model,".into(),
+        "# E(w) = equilibrium_modulus + sum_k modulus_k i w tau_k / (1 + i w tau_k).".into(),
+        format!("name = {}", text(&rubber.name)),
+        format!("source = {}", text(source)),
+        format!("equilibrium_modulus_mpa = {:.6e}", rubber.equilibrium_modulus / 1e6),
+        format!("poisson_ratio = {}", rubber.poisson_ratio),
+    ];
+    if let Some(range) = &data.measured {
+        lines.push("# Frequencies of the measurement, at the reference temperature.".into());
+        lines.push(format!("measured_hz = [{:.6e}, {:.6e}]", range.lowest_hz, range.highest_hz));
     }
+    if let Some(temperature) = &data.temperature {
+        lines.push("\n[temperature]".into());
+        lines.push(format!("reference_c = {:?}", temperature.reference_c));
+        if let Some([lowest, highest]) = temperature.measured_c {
+            lines.push(format!("measured_c = [{lowest:?}, {highest:?}]"));
+        }
+        lines.push(match temperature.law {
+            ShiftLaw::Wlf { c1, c2_k } => {
+                format!("wlf = {{ c1 = {c1:.6e}, c2_k = {c2_k:.6e} }}")
+            }
+            ShiftLaw::Arrhenius { activation_energy_kj_mol: energy } => {
+                format!("arrhenius = {{ activation_energy_kj_mol = {energy:.6e} }}")
+            }
+        });
+    }
+    if let Some(vertical) = data.temperature.and_then(|temperature| temperature.vertical) {
+        lines.push("# Factor of all moduli at another temperature.".into());
+        lines.push(match vertical {
+            VerticalShift::RhoT { expansion_per_k } => {
+                format!("vertical = {{ rho_t = {{ expansion_per_k = {expansion_per_k:e} }} }}")
+            }
+            VerticalShift::Power { exponent } => {
+                format!("vertical = {{ power = {{ exponent = {exponent:.6e} }} }}")
+            }
+        });
+    }
+    for branch in &rubber.branches {
+        lines.push("\n[[branches]]".into());
+        lines.push(format!("modulus_mpa = {:.6e}", branch.modulus / 1e6));
+        lines.push(format!("relaxation_time_s = {:.6e}", branch.relaxation_time));
+    }
+    lines.join("\n") + "\n"
 }
 
 #[cfg(test)]
@@ -80,10 +77,10 @@ mod tests {
             let temperature =
                 Some(TemperatureDependence { reference_c: 20.0, law, measured_c, vertical });
             let data = RubberData { rubber, measured, temperature };
-            let text = data.to_toml("sweep.csv");
+            let text = to_toml(&data, "sweep.csv");
             assert_eq!(parse_rubber_data(Path::new("tread.toml"), &text).unwrap(), data);
         }
         let plain = RubberData::from(Rubber::elastic(3e6, 0.5));
-        assert_eq!(parse_rubber_data(Path::new("e.toml"), &plain.to_toml("")).unwrap(), plain);
+        assert_eq!(parse_rubber_data(Path::new("e.toml"), &to_toml(&plain, "")).unwrap(), plain);
     }
 }

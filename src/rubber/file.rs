@@ -24,19 +24,18 @@
 //! vertical = { rho_t = { expansion_per_k = 6.6e-4 } }   # optional; or: { power = { exponent = 1.1 } }
 //! ```
 
-use crate::error_kind::{ErrorKind, HasKind};
 use crate::files::{self, TomlError};
+use asperity_core::error_kind::{ErrorKind, HasKind};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::{
-    FrequencyRange, MaxwellBranch, Rubber, RubberError, ShiftLaw, TemperatureDependence,
-    TemperatureError, VerticalShift,
+use asperity_core::rubber::{
+    FrequencyRange, MaxwellBranch, Rubber, RubberData, RubberError, ShiftLaw,
+    TemperatureDependence, TemperatureError, VerticalShift,
 };
 
 const PA_PER_MPA: f64 = 1e6;
-const TABLE_2_1: &str = include_str!("../../data/rubber/table_2_1.toml");
 
 /// Why a file is no rubber.
 #[derive(Debug, thiserror::Error)]
@@ -123,55 +122,6 @@ impl HasKind for RubberFileError {
             | Self::Laws { .. }
             | Self::MeasuredRange { .. } => ErrorKind::Input,
         }
-    }
-}
-
-/// A rubber with what is known of its measurement.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RubberData {
-    /// The rubber at the reference temperature, or at the one it was shifted to.
-    pub rubber: Rubber,
-    /// Frequencies at which it was measured, at the same temperature.
-    pub measured: Option<FrequencyRange>,
-    /// How it shifts with temperature.
-    pub temperature: Option<TemperatureDependence>,
-}
-
-impl From<Rubber> for RubberData {
-    fn from(rubber: Rubber) -> Self {
-        Self { rubber, measured: None, temperature: None }
-    }
-}
-
-impl RubberData {
-    /// Warnings of what is extrapolated from the measurement where a surface excites frequencies: the
-    /// moduli at these, and the shift to the temperature.
-    pub fn extrapolations(&self, excited: Option<FrequencyRange>) -> Vec<String> {
-        let temperature = self.temperature.and_then(|dependence| dependence.extrapolation());
-        let range = self.measured.zip(excited);
-        let frequencies = range.and_then(|(measured, excited)| measured.extrapolation(excited));
-        temperature.into_iter().chain(frequencies).collect()
-    }
-
-    /// The rubber at another temperature in °C, the new reference: relaxation times multiplied by the
-    /// shift factor, measured frequencies divided by it, moduli multiplied by the vertical factor
-    /// where the file has one.
-    ///
-    /// # Errors
-    /// [`TemperatureError`] without a law, or where it has no shift factor.
-    pub fn at_temperature(&self, temperature_c: f64) -> Result<Self, TemperatureError> {
-        let law = self
-            .temperature
-            .ok_or_else(|| TemperatureError::NoLaw { rubber: self.rubber.name.clone() })?;
-        let factor = law.shift_factor(temperature_c)?;
-        let measured = self.measured.map(|range| range.shifted(factor));
-        let temperature = Some(law.about(temperature_c));
-        let shifted = self.rubber.shifted(factor);
-        let rubber = match law.vertical {
-            None => shifted,
-            Some(_) => shifted.scaled(law.vertical_factor(temperature_c)),
-        };
-        Ok(Self { rubber, measured, temperature })
     }
 }
 
@@ -357,16 +307,6 @@ fn dependence(
     Ok(found)
 }
 
-impl Rubber {
-    /// The rubber of the published tables (thesis, Table 2.1) with the constant Poisson ratio 0.49:
-    /// the bundled file `data/rubber/table_2_1.toml`.
-    pub fn table_2_1() -> Self {
-        // The text is compiled in and a test parses it, so this cannot fail at a user's.
-        parse_rubber(Path::new("data/rubber/table_2_1.toml"), TABLE_2_1)
-            .expect("the bundled file is a rubber")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -389,16 +329,6 @@ mod tests {
     fn the_bundled_rubber_is_the_one_built_in() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/rubber/table_2_1.toml");
         assert_eq!(read_rubber(path).unwrap(), Rubber::table_2_1());
-    }
-
-    #[test]
-    fn the_bundled_rubber_is_table_2_1() {
-        let rubber = Rubber::table_2_1();
-        assert_eq!((rubber.equilibrium_modulus, rubber.poisson_ratio), (4.17e6, 0.49));
-        // Typed from the thesis a second time; 2901.89 MPa is the sum of its moduli.
-        assert!((rubber.glassy_modulus() - 2901.89e6).abs() < 1e-12 * 2901.89e6);
-        let times: Vec<f64> = rubber.branches.iter().map(|branch| branch.relaxation_time).collect();
-        assert_eq!(times, [1.134e-2, 2.628e-4, 1.316e-5, 1.295e-6, 7.708e-8, 4.2e-10]);
     }
 
     #[test]

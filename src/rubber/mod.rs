@@ -1,25 +1,22 @@
-//! Rubber: moduli over frequency and temperature, the file that states them, and their fit to
-//! measured sweeps.
-
-pub mod finite_strain;
-pub mod fit;
+//! The files of a rubber: its TOML, and tables of measured sweeps.
+//!
+//! The rubber itself is that of [`asperity_core::rubber`], under the same names.
 
 mod document;
 mod file;
-mod frequencies;
-mod maxwell;
-mod oddities;
-mod temperature;
-mod vertical;
 
+pub use asperity_core::rubber::*;
+pub use document::to_toml;
 pub use file::{
-    RubberData, RubberFileError, parse_rubber, parse_rubber_data, read_rubber, read_rubber_at,
-    read_rubber_data,
+    RubberFileError, parse_rubber, parse_rubber_data, read_rubber, read_rubber_at, read_rubber_data,
 };
-pub use finite_strain::{FiniteStrainRubber, Rheology};
-pub use frequencies::FrequencyRange;
-pub use maxwell::{MaxwellBranch, Rubber, RubberError};
-pub use temperature::{
-    GAS_CONSTANT, HOTTEST_C, ShiftLaw, TemperatureDependence, TemperatureError, ZERO_CELSIUS,
-};
-pub use vertical::VerticalShift;
+
+/// A rubber from measured storage and loss moduli: the fit of [`asperity_core::rubber::fit`], and the tables that it
+/// reads.
+pub mod fit {
+    pub use asperity_core::rubber::fit::*;
+    pub use asperity_scans::sweeps::{
+        DescribedColumn, SweepTable, TableError, TableOptions, doubts, parse_sweeps,
+        read_shift_factors, read_sweeps,
+    };
+}

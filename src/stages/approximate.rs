@@ -6,7 +6,7 @@ use super::characterise::{
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::jackknife_95;
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::surface::SineScale;
 use crate::surface::correlation::CorrelationSample;
 use crate::surface::ladder::{Ladder, Undetermined};
@@ -88,26 +88,26 @@ impl Approximate {
         self.waves.iter().copied().chain(given).collect()
     }
 
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let waves = self.numbers();
         let distinct = waves.iter().enumerate().all(|(i, a)| waves[..i].iter().all(|b| a != b));
         let valid = !waves.is_empty() && distinct && waves.iter().all(|m| (1..=20).contains(m));
         let demanded = "a list of numbers of waves, each once and 1 to 20";
-        demand(valid, "approximate.waves", &waves, demanded)?;
+        require(valid, "approximate.waves", &waves, demanded)?;
         let demanded = "positive wavelengths, ascending, of which the longest is a multiple, \
                         and amplitudes of 0 or more";
         for given in &self.given {
             let scale = |scale: &GivenScale| (scale.wavelength_mm, scale.amplitude_mm);
             let scales: Vec<(f64, f64)> = given.scales.iter().map(scale).collect();
             let key = "approximate.given.scales (wavelength_mm, amplitude_mm)";
-            demand(given.holds(), key, scales, demanded)?;
+            require(given.holds(), key, scales, demanded)?;
         }
         for (key, value) in [
             ("approximate.shortest_wavelength_mm", self.shortest_wavelength_mm),
             ("approximate.longest_lag_mm", self.longest_lag_mm),
         ] {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
-            demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
+            require(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, Watch};
 use crate::artifact::{ArrayDataset, Metadata, Pending, RunView, SolveStore, Storage};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
 pub(crate) use attainable::demand_attainable;
 use curve::FieldSolution;
@@ -99,21 +99,21 @@ fn default_contact_points() -> u32 {
 const SPEEDS_MM_S: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 impl Bem {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let speeds = &self.speeds_mm_s;
         let possible = speeds.iter().all(|v| SPEEDS_MM_S.contains(v));
         let valid = !speeds.is_empty() && possible && no_repeats(speeds);
-        demand(valid, "bem.speeds_mm_s", speeds, SPEEDS)?;
+        require(valid, "bem.speeds_mm_s", speeds, SPEEDS)?;
         for (key, areas) in [
             ("bem.area_fractions", &self.area_fractions),
             ("bem.field_area_fractions", &self.field_area_fractions),
         ] {
             let ascending = areas.windows(2).all(|w| w[0] < w[1]);
             let inside = areas.iter().all(|a| *a > 0.0 && *a < 1.0);
-            demand(ascending && inside, key, areas, "ascending, between 0 and 1 (5 % is 0.05)")?;
+            require(ascending && inside, key, areas, "ascending, between 0 and 1 (5 % is 0.05)")?;
         }
         let areas = &self.area_fractions;
-        demand(
+        require(
             !areas.is_empty(),
             "bem.area_fractions",
             areas,
@@ -122,7 +122,7 @@ impl Bem {
         let range = areas[0]..=areas[areas.len() - 1];
         let fields = &self.field_area_fractions;
         let within = fields.iter().all(|a| range.contains(a));
-        demand(
+        require(
             within,
             "bem.field_area_fractions",
             fields,
@@ -133,15 +133,15 @@ impl Bem {
             ("bem.grid_tolerance", self.grid_tolerance),
         ];
         for (key, tolerance) in tolerances.into_iter().filter_map(|(key, t)| Some((key, t?))) {
-            demand(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
+            require(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
         }
         if let Some(tolerance) = self.average_tolerance {
             let key = "bem.average_tolerance";
-            demand(TOLERANCES.contains(&tolerance), key, tolerance, TOLERANCES_IN_WORDS)?;
+            require(TOLERANCES.contains(&tolerance), key, tolerance, TOLERANCES_IN_WORDS)?;
         }
         let points = self.points_per_shortest_wavelength;
         let key = "bem.points_per_shortest_wavelength";
-        demand((4..=65536).contains(&points), key, points, "4 to 65536")
+        require((4..=65536).contains(&points), key, points, "4 to 65536")
     }
 
     /// Relative accuracy of friction by interpolation.

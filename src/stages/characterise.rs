@@ -17,7 +17,7 @@ use super::ingest::read_windows;
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::surface::LineScan;
 use crate::surface::correlation::{HeightDifferenceCorrelation, correlate_scans};
 use crate::surface::filter::ProfileFilter;
@@ -112,12 +112,12 @@ impl Default for Characterise {
 }
 
 impl Characterise {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let count = "a whole number from 2 to 1000";
         let lags = self.lags_per_decade;
-        demand((2..=1000).contains(&lags), "characterise.lags_per_decade", lags, count)?;
+        require((2..=1000).contains(&lags), "characterise.lags_per_decade", lags, count)?;
         let bins = self.spectrum_bins_per_decade;
-        demand((2..=1000).contains(&bins), "characterise.spectrum_bins_per_decade", bins, count)?;
+        require((2..=1000).contains(&bins), "characterise.spectrum_bins_per_decade", bins, count)?;
         for (key, value) in [
             ("characterise.longest_lag_mm", self.longest_lag_mm),
             ("characterise.self_affine_shortest_lag_mm", self.self_affine_shortest_lag_mm),
@@ -131,7 +131,7 @@ impl Characterise {
             ("characterise.hurst_longest_wavelength_mm", self.hurst_longest_wavelength_mm),
         ] {
             let positive = value.is_none_or(|mm| mm > 0.0 && mm.is_finite());
-            demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
+            require(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
         for (keys, lower, upper) in [
             ("characterise.(lambda_s_mm, lambda_c_mm)", self.lambda_s_mm, self.lambda_c_mm),
@@ -170,10 +170,10 @@ fn demand_ascending(
     keys: &'static str,
     lower: Option<f64>,
     upper: Option<f64>,
-) -> Result<(), Violation> {
+) -> Result<(), InvalidRecipe> {
     match (lower, upper) {
         (Some(lower), Some(upper)) => {
-            demand(lower < upper, keys, (lower, upper), "in ascending order")
+            require(lower < upper, keys, (lower, upper), "in ascending order")
         }
         _ => Ok(()),
     }

@@ -9,7 +9,7 @@ use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, Watch, schema_of};
 use crate::artifact::{ArtifactError, Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::fem::cost::MeshCost;
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 pub(crate) use curve::CurveResult as FemCurve;
 use rayon::prelude::*;
@@ -55,12 +55,12 @@ impl Fem {
         self.waves.is_empty() || self.waves.contains(&waves)
     }
 
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let columns = self.columns_per_shortest_wavelength;
         let key = "fem.columns_per_shortest_wavelength";
-        demand((16..=1024).contains(&columns), key, columns, "16 to 1024")?;
+        require((16..=1024).contains(&columns), key, columns, "16 to 1024")?;
         let ratio = self.pressure_ratio;
-        demand((1.01..=2.0).contains(&ratio), "fem.pressure_ratio", ratio, "between 1.01 and 2")
+        require((1.01..=2.0).contains(&ratio), "fem.pressure_ratio", ratio, "between 1.01 and 2")
     }
 }
 

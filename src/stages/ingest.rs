@@ -15,7 +15,7 @@ use crate::artifact::{
     ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Digesting,
     Input, Metadata, Row, RunView, SchemaVersion, Storage,
 };
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::scans::file::{CHANNELS, Family, Grid, MapLines, is_instrument, open_channel};
 use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
@@ -69,12 +69,12 @@ pub struct Ingest {
 }
 
 impl Ingest {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         self.text.as_ref().map_or(Ok(()), TextFormat::validate)?;
-        demand(self.map_line_step > 0, "ingest.map_line_step", self.map_line_step, "1 or more")?;
+        require(self.map_line_step > 0, "ingest.map_line_step", self.map_line_step, "1 or more")?;
         let channel = self.erd_channel;
         let shown = channel.unwrap_or_default();
-        demand(channel != Some(0), "ingest.erd_channel", shown, "1 or more, the first is 1")?;
+        require(channel != Some(0), "ingest.erd_channel", shown, "1 or more, the first is 1")?;
         Ok(self.conditioning.validate()?)
     }
 }

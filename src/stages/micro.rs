@@ -12,7 +12,7 @@ use crate::artifact::{Metadata, Row, RunView, SchemaVersion, SolveStore};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::multiscale::correction::Microscale;
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use crate::surface::{Wave, wave};
 pub(crate) use curve::law_of;
@@ -66,22 +66,22 @@ impl Default for Micro {
 const COLUMNS_KEY: &str = "micro.columns_per_shortest_wavelength";
 
 impl Micro {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let threshold = self.rms_slope_threshold;
         let key = "micro.rms_slope_threshold";
-        demand(threshold > 0.0 && threshold.is_finite(), key, threshold, "positive and finite")?;
+        require(threshold > 0.0 && threshold.is_finite(), key, threshold, "positive and finite")?;
         let columns = self.columns_per_shortest_wavelength;
-        demand((16..=1024).contains(&columns), COLUMNS_KEY, columns, "16 to 1024")?;
+        require((16..=1024).contains(&columns), COLUMNS_KEY, columns, "16 to 1024")?;
         let tolerance = self.tolerance;
         let key = "micro.tolerance";
-        demand(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
+        require(SHARES.contains(&tolerance), key, tolerance, SHARES_IN_WORDS)?;
         if let Some(length) = self.contact_length_mm {
             let key = "micro.contact_length_mm";
-            demand(length > 0.0 && length.is_finite(), key, length, "positive and finite")?;
+            require(length > 0.0 && length.is_finite(), key, length, "positive and finite")?;
         }
         let points = self.points_per_shortest_macro_wavelength;
         let key = "micro.points_per_shortest_macro_wavelength";
-        demand((4..=4096).contains(&points), key, points, "4 to 4096")
+        require((4..=4096).contains(&points), key, points, "4 to 4096")
     }
 
     /// The heights of a macro surface in m on its grid, and their period in m.

@@ -179,7 +179,7 @@ pub enum StageError {
     Conditioning(#[from] crate::surface::ConditioningError),
     /// The picture of the faults of a scan cannot be drawn.
     #[error("ingest.fault_pictures: {0}")]
-    FaultPicture(#[from] crate::report::FigureError),
+    FaultPicture(#[from] crate::plot::FigureError),
     /// No scan file was found.
     #[error("no scan files in [{}]: give files or folders with files (ingest.scans or --scans)", paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", "))]
     NoScans {

@@ -18,7 +18,7 @@ use super::fem::Fem;
 use super::realise::{Surface, read_surfaces};
 use super::{Context, StageError, Watch};
 use crate::artifact::{Metadata, RunView, SolveStore};
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 pub(crate) use bound::is_negligible;
 use ensemble::Ensemble;
@@ -67,18 +67,18 @@ impl Default for Multilevel {
 }
 
 impl Multilevel {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let columns = self.columns_per_shortest_wavelength;
         let key = "multilevel.columns_per_shortest_wavelength";
-        demand((16..=1024).contains(&columns), key, columns, "16 to 1024")?;
+        require((16..=1024).contains(&columns), key, columns, "16 to 1024")?;
         let (key, ratio) = ("multilevel.pressure_ratio", self.pressure_ratio);
-        demand((1.01..=2.0).contains(&ratio), key, ratio, "between 1.01 and 2")?;
+        require((1.01..=2.0).contains(&ratio), key, ratio, "between 1.01 and 2")?;
         // The spread of fewer than three differences has an interval too wide for any use.
         let (key, first) = ("multilevel.first_realisations", self.first_realisations);
-        demand((3..=1000).contains(&first), key, first, "3 to 1000")?;
+        require((3..=1000).contains(&first), key, first, "3 to 1000")?;
         let (key, most) = ("multilevel.most_realisations", self.most_realisations);
         let range = "multilevel.first_realisations (5 if not set) to 1000";
-        demand((first..=1000).contains(&most), key, most, range)
+        require((first..=1000).contains(&most), key, most, range)
     }
 
     /// How the curves of all waves at finite deformation are solved.

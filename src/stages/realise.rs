@@ -3,7 +3,7 @@
 use super::approximate::{ScaleRow, WAVES_FILE};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::surface::realisation::random_phases;
 use crate::surface::{SineScale, Wave};
 use schemars::JsonSchema;
@@ -31,22 +31,22 @@ pub struct Realise {
 }
 
 impl Realise {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
-        demand(!self.waves.is_empty(), "realise.waves", &self.waves, "at least one number")?;
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
+        require(!self.waves.is_empty(), "realise.waves", &self.waves, "at least one number")?;
         let keys = [
             ("realise.realisations", self.realisations),
             ("realise.most_realisations", self.most_realisations),
         ];
         for (key, count) in keys.into_iter().filter_map(|(key, count)| Some((key, count?))) {
-            demand((1..=100_000).contains(&count), key, count, "1 to 100000")?;
+            require((1..=100_000).contains(&count), key, count, "1 to 100000")?;
         }
         if self.drawn() == 0 {
             let advice = "give a number of surfaces, or a `tolerance` that it follows from";
-            return Err(Violation::Missing { key: "realise.realisations", advice });
+            return Err(InvalidRecipe::Missing { key: "realise.realisations", advice });
         }
         // TOML's integers are signed.
         let seed = self.seed.unwrap_or_default();
-        demand(seed < 1 << 63, "realise.seed", seed, "below 2^63")
+        require(seed < 1 << 63, "realise.seed", seed, "below 2^63")
     }
 
     /// Number of surfaces that are drawn: as many as there may be need of. To draw one costs nothing.

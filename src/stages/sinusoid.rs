@@ -17,7 +17,7 @@ pub use rows::{AgreementRow, AsymptoteRow, FieldRow, PeakRow, PointRow};
 
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, SchemaVersion, SolveStore};
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{Rubber, RubberData, read_rubber};
 use points::{Case, Scale};
 use problem::Outcome;
@@ -105,34 +105,34 @@ fn ascending(values: &[f64], range: std::ops::RangeInclusive<f64>) -> bool {
 }
 
 impl Sinusoid {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let wavelength = self.wavelength_mm;
         let key = "sinusoid.wavelength_mm";
-        demand((1e-6..=1e6).contains(&wavelength), key, wavelength, "between 1e-6 and 1e6")?;
+        require((1e-6..=1e6).contains(&wavelength), key, wavelength, "between 1e-6 and 1e6")?;
         check_list("sinusoid.aspect_ratios", &self.aspect_ratios, 1e-4..=1.0, RATIOS)?;
         check_list("sinusoid.speeds_mm_s", &self.speeds_mm_s, 1e-9..=1e9, SPEEDS)?;
         let pressure = self.pressure_mpa;
         let key = "sinusoid.pressure_mpa";
-        demand((1e-6..=1e4).contains(&pressure), key, pressure, "between 1e-6 and 1e4")?;
+        require((1e-6..=1e4).contains(&pressure), key, pressure, "between 1e-6 and 1e4")?;
         let columns = self.columns;
         let even = columns.is_multiple_of(2) && (16..=4096).contains(&columns);
-        demand(even, "sinusoid.columns", columns, "even, 16 to 4096")?;
+        require(even, "sinusoid.columns", columns, "even, 16 to 4096")?;
         let points = self.half_space_points;
         let even = points.is_multiple_of(2) && (64..=1 << 20).contains(&points);
-        demand(even, "sinusoid.half_space_points", points, "even, 64 to 1048576")?;
+        require(even, "sinusoid.half_space_points", points, "even, 64 to 1048576")?;
         let levels = "at least one, ascending, from 1e-4 to 1";
         check_list("sinusoid.agreement_levels", &self.agreement_levels, 1e-4..=1.0, levels)?;
         self.fields.as_ref().map_or(Ok(()), |fields| self.check_fields(fields))?;
         self.pressure_dependence.as_ref().map_or(Ok(()), PressureDependence::check)
     }
 
-    fn check_fields(&self, fields: &Fields) -> Result<(), Violation> {
+    fn check_fields(&self, fields: &Fields) -> Result<(), InvalidRecipe> {
         for (key, wanted, swept) in [
             ("sinusoid.fields.aspect_ratios", &fields.aspect_ratios, &self.aspect_ratios),
             ("sinusoid.fields.speeds_mm_s", &fields.speeds_mm_s, &self.speeds_mm_s),
         ] {
             let known = wanted.iter().all(|value| swept.contains(value));
-            demand(known, key, wanted, "values of the same key of [sinusoid]")?;
+            require(known, key, wanted, "values of the same key of [sinusoid]")?;
         }
         Ok(())
     }
@@ -155,7 +155,7 @@ const RATIOS: &str = "at least one, ascending, from 1e-4 to 1";
 const SPEEDS: &str = "at least one, ascending, from 1e-9 to 1e9";
 
 impl PressureDependence {
-    fn check(&self) -> Result<(), Violation> {
+    fn check(&self) -> Result<(), InvalidRecipe> {
         let ratio = [self.aspect_ratio];
         let key = "sinusoid.pressure_dependence.aspect_ratio";
         check_list(key, &ratio, 1e-4..=1.0, "between 1e-4 and 1")?;
@@ -172,8 +172,8 @@ fn check_list(
     values: &[f64],
     range: std::ops::RangeInclusive<f64>,
     wanted: &'static str,
-) -> Result<(), Violation> {
-    demand(ascending(values, range), key, values, wanted)
+) -> Result<(), InvalidRecipe> {
+    require(ascending(values, range), key, values, wanted)
 }
 
 /// Reads the rubber of a recipe.

@@ -15,7 +15,7 @@ use super::hybrid::{HYBRID_FILE, Hybrid, HybridRow};
 use super::{Context, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use accuracy::missed;
 use models::comparisons;
@@ -59,10 +59,10 @@ pub struct Tables {
 }
 
 impl Tables {
-    pub(crate) fn check(&self) -> Result<(), Violation> {
+    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
         let theories = &self.theories;
         let once = theories.iter().enumerate().all(|(i, a)| !theories[..i].contains(a));
-        demand(once, "tables.theories", theories, "a list without repeats")?;
+        require(once, "tables.theories", theories, "a list without repeats")?;
         self.theory_constants.check()
     }
 }

@@ -36,7 +36,7 @@ pub use task::{Solvers, Task};
 use crate::artifact::ArtifactError;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::pipeline::PipelineError;
-use crate::recipe::Violation;
+use crate::requirement::InvalidRecipe;
 use crate::stages::StageError;
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ pub const STAGE: &str = "sweep";
 pub enum SweepError {
     /// The recipe.
     #[error(transparent)]
-    Recipe(#[from] Violation),
+    Recipe(#[from] InvalidRecipe),
     /// A case.
     #[error("case {case}: {source}")]
     Case {

@@ -1,7 +1,8 @@
 //! What a shard computes: the tasks of the stages that solve.
 
 use crate::artifact::{Digest, SolveStore};
-use crate::recipe::{Chain, Recipe, Violation, Work};
+use crate::recipe::{Chain, Recipe, Work};
+use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages::bem::{self, Bem};
 use crate::stages::fem::{self, Fem};
@@ -41,8 +42,8 @@ impl Solvers {
     /// Those of a case.
     ///
     /// # Errors
-    /// [`Violation`] for the study of one sine.
-    pub fn of(case: &Recipe) -> Result<Self, Violation> {
+    /// [`InvalidRecipe`] for the study of one sine.
+    pub fn of(case: &Recipe) -> Result<Self, InvalidRecipe> {
         match case.work()? {
             Work::Chain(Chain { bem, micro, fem, multilevel, .. }) => Ok(Self {
                 bem: bem.clone(),
@@ -50,7 +51,7 @@ impl Solvers {
                 fem: fem.cloned().unwrap_or_default(),
                 multilevel: multilevel.copied().unwrap_or_default(),
             }),
-            Work::Sinusoid(_) => Err(Violation::SweepOfSinusoid),
+            Work::Sinusoid(_) => Err(InvalidRecipe::SweepOfSinusoid),
         }
     }
 }

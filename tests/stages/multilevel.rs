@@ -290,6 +290,7 @@ fn families_of_three_waves_agree_with_averages_of_thirty_by_finite_elements() {
     let (_, view) = solved(&campaign, "out");
     let (half_space, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
     let (full, _) = view.read_table::<FemCurveRow>("fem", FEM_FILE).unwrap();
+    let mut of_all_families = 0;
     for speed in [10.0, 50.0] {
         for area in [0.03, 0.05, 0.1] {
             let b: Vec<f64> = half_space
@@ -316,8 +317,11 @@ fn families_of_three_waves_agree_with_averages_of_thirty_by_finite_elements() {
                 of_pool += inside(of_all);
             }
             eprintln!("{speed} mm/s, area {area}: {of_thirty} and {of_pool} of 100");
-            assert!(of_thirty >= 95, "{speed} mm/s, area {area}: {of_thirty} of 100");
+            // Of 100 families of an interval of exactly 95 % fewer than 90 agree once in a hundred times.
+            assert!(of_thirty >= 90, "{speed} mm/s, area {area}: {of_thirty} of 100");
+            of_all_families += of_thirty;
             assert!(of_pool >= 90, "{speed} mm/s, area {area}: {of_pool} of 100");
         }
     }
+    assert!(of_all_families >= 570, "{of_all_families} of 600");
 }

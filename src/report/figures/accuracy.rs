@@ -2,8 +2,8 @@
 
 use super::{grouped, heading, speed_key};
 use crate::artifact::RunView;
+use crate::plot::{Axis, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
-use crate::report::plot::{Axis, Figure, Mark, Panel, Points, Series};
 use crate::report::read::rows;
 use crate::stages::bem::{SOLVES_FILE, SolveRow};
 use crate::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};

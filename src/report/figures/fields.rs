@@ -2,8 +2,8 @@
 
 use super::thinned;
 use crate::artifact::{ArrayDataset, Attribute, RunView};
+use crate::plot::{Axis, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
-use crate::report::plot::{Axis, Figure, Mark, Panel, Points, Series};
 use crate::report::read::has;
 use crate::stages::bem::{FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION};
 use crate::stages::realise::{Surface, read_surfaces};

@@ -14,8 +14,8 @@ pub(super) use rubber::{Material, material};
 pub(super) use waves::microscale_slope;
 
 use super::ReportError;
-use super::plot::Figure;
 use crate::artifact::RunView;
+use crate::plot::Figure;
 use crate::stages::Stage;
 
 /// A kind of figure.

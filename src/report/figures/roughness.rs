@@ -2,9 +2,9 @@
 
 use super::grouped;
 use crate::artifact::RunView;
+use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
-use crate::report::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::read::{rows, table};
 use crate::stages::approximate::{FITTED_FILE, FittedRow};
 use crate::stages::characterise::{

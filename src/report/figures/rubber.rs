@@ -1,8 +1,8 @@
 //! The master curve of the rubber of a run.
 
 use crate::artifact::RunView;
+use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
-use crate::report::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::read::has;
 use crate::rubber::{FrequencyRange, Rubber};
 use crate::stages::realise::{SURFACES_FILE, read_surfaces};

@@ -2,9 +2,9 @@
 
 use super::thinned;
 use crate::artifact::RunView;
+use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
-use crate::report::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::read::has;
 use crate::stages::ingest::{SCANS_FILE, read_windows};
 use crate::surface::LineScan;

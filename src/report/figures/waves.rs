@@ -2,8 +2,8 @@
 
 use super::grouped;
 use crate::artifact::RunView;
+use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
-use crate::report::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::read::rows;
 use crate::stages::approximate::{ScaleRow, WAVES_FILE};
 

@@ -1,6 +1,6 @@
 //! Parts that all sections are made of.
 
-use crate::report::plot::scientific;
+use crate::plot::scientific;
 use maud::{Markup, html};
 
 /// A sentence in place of what a run does not have.

@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::page::{number, optional, table};
-use crate::report::plot::described;
+use crate::plot::described;
 use crate::report::{ReportError, Study, study_figure};
 use crate::stages::Stage;
 use crate::stages::sinusoid::PointRow;

@@ -3,7 +3,7 @@
 use super::warnings::left_out;
 use super::{AVERAGE, Characterise, demand_ascending};
 use crate::artifact::Row;
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::surface::filter::{ProfileFilter, waviness};
 use crate::surface::profile::{ProfileParameters, profile_parameters};
 use crate::surface::texture::{DepthError, DepthOptions, mean_profile_depths, texture_bands};
@@ -57,10 +57,10 @@ impl Default for ProfileDepth {
 }
 
 impl ProfileDepth {
-    pub(super) fn check(&self) -> Result<(), Violation> {
+    pub(super) fn check(&self) -> Result<(), InvalidRecipe> {
         let share = self.most_drop_outs;
         let key = "characterise.profile_depth.most_drop_outs";
-        demand((0.0..1.0).contains(&share), key, share, "from 0 to below 1")?;
+        require((0.0..1.0).contains(&share), key, share, "from 0 to below 1")?;
         for (key, value) in [
             ("characterise.profile_depth.segment_mm", Some(self.segment_mm)),
             ("characterise.profile_depth.spike_slope", Some(self.spike_slope)),
@@ -68,7 +68,7 @@ impl ProfileDepth {
             ("characterise.profile_depth.high_pass_mm", self.high_pass_mm),
         ] {
             let positive = value.is_none_or(|x| x > 0.0 && x.is_finite());
-            demand(positive, key, value.unwrap_or_default(), "positive and finite")?;
+            require(positive, key, value.unwrap_or_default(), "positive and finite")?;
         }
         let low = Some(self.low_pass_mm);
         let keys = "characterise.profile_depth.(low_pass_mm, high_pass_mm)";

@@ -1,8 +1,7 @@
 //! Pictures of the faults of a scan, in SVG.
 
 use crate::artifact::Pending;
-use crate::report::FigureError;
-use crate::report::figure::{COLOURS, FONT};
+use crate::plot::{COLOURS, FONT, FigureError};
 use crate::stages::StageError;
 use crate::surface::ConditioningReport;
 use crate::surface::faults::{FaultOverview, Marks};

@@ -2,7 +2,7 @@
 
 use super::Value;
 use crate::artifact::{Row, RunView};
-use crate::recipe::{Violation, demand};
+use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use crate::stages::StageError;
 use crate::stages::bem::CurveRow;
@@ -54,13 +54,13 @@ impl Default for TheoryConstants {
 }
 
 impl TheoryConstants {
-    pub(super) fn check(&self) -> Result<(), Violation> {
+    pub(super) fn check(&self) -> Result<(), InvalidRecipe> {
         let gamma = self.persson_gamma;
         let key = "tables.theory_constants.persson_gamma";
-        demand((0.0..=1.0).contains(&gamma), key, gamma, "between 0 and 1")?;
+        require((0.0..=1.0).contains(&gamma), key, gamma, "between 0 and 1")?;
         let ratio = self.klueppel_heinrich_layer_ratio;
         let key = "tables.theory_constants.klueppel_heinrich_layer_ratio";
-        demand((1e-6..=1e6).contains(&ratio), key, ratio, "between 1e-6 and 1e6")
+        require((1e-6..=1e6).contains(&ratio), key, ratio, "between 1e-6 and 1e6")
     }
 
     /// A warning where friction stands for a constant that nobody has chosen.

@@ -1,0 +1,31 @@
+//! Contact mechanics and roughness: numbers in, numbers out.
+//!
+//! No file, no command line, no C library, nothing of one operating system. The crate `asperity` has these modules under
+//! the same names and adds scans, stages and results.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
+//! | [`rubber`] | generalised Maxwell model, temperature, finite strain, its fit to measured moduli |
+//! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
+//! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
+//! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
+//! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
+//! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
+//! | [`numerics`] | mathematics without physics: Krylov, interpolation, statistics |
+//! | [`error_kind`] | who can mend an error |
+//!
+//! # Conventions
+//! SI throughout (m, Pa, s, rad). Heights grow towards the rubber; the rubber slides in `+x` at speed `v > 0`; pressure is
+//! positive in compression; a positive friction coefficient opposes the motion. Missing heights are NaN and nothing else
+//! is.
+
+pub mod contact;
+pub mod error_kind;
+pub mod fem;
+pub mod multiscale;
+pub mod numerics;
+pub mod reference;
+pub mod rubber;
+pub mod surface;
+pub mod theory;

@@ -1,0 +1,124 @@
+//! The order of the modules: each imports from those below it alone, so that there is no circle.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Modules of the program, the lowest first. What the crates below it hold may be imported by all.
+const PROGRAM: &[&str] = &[
+    "text",
+    "requirement",
+    "plot",
+    "rubber",
+    "artifact",
+    "stages",
+    "recipe",
+    "report",
+    "pipeline",
+    "sweep",
+    "schemas",
+    "forecast",
+    "bench",
+    "cli",
+];
+
+/// Modules of the mechanics, the lowest first.
+const MECHANICS: &[&str] = &[
+    "error_kind",
+    "numerics",
+    "surface",
+    "rubber",
+    "reference",
+    "contact",
+    "multiscale",
+    "fem",
+    "theory",
+];
+
+/// Every Rust file of a top module: `NAME.rs` and all in `NAME/`.
+fn files_of(source: &Path, module: &str) -> Vec<PathBuf> {
+    let mut folders = vec![source.join(module)];
+    let mut files: Vec<PathBuf> = vec![source.join(format!("{module}.rs"))];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                files.push(path);
+            }
+        }
+    }
+    files.retain(|file| file.is_file());
+    files
+}
+
+/// The names behind `crate::` in a text.
+fn imports(text: &str) -> impl Iterator<Item = &str> {
+    text.split("crate::").skip(1).map(|rest| {
+        let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        &rest[..end.unwrap_or(rest.len())]
+    })
+}
+
+/// Imports of a module from itself or from one above it, and modules that the order does not know.
+fn upward(source: &Path, order: &[&str]) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for (place, module) in order.iter().enumerate() {
+        let files = files_of(source, module);
+        assert!(!files.is_empty(), "{module} is no module of {}", source.display());
+        for file in files {
+            let text = std::fs::read_to_string(&file).unwrap();
+            for name in imports(&text) {
+                if order[place + 1..].contains(&name) {
+                    found.insert(format!("{} imports {name}", file.display()));
+                }
+            }
+        }
+    }
+    let known = |name: &str| order.contains(&name) || ["lib", "main", "layers"].contains(&name);
+    for entry in std::fs::read_dir(source).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        if !known(&name) {
+            found.insert(format!("{name} has no place in the order"));
+        }
+    }
+    found
+}
+
+fn project() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn no_module_imports_from_one_above_it() {
+    let none = BTreeSet::new();
+    assert_eq!(upward(&project().join("src"), PROGRAM), none);
+    assert_eq!(upward(&project().join("crates/core/src"), MECHANICS), none);
+}
+
+#[test]
+fn an_import_upwards_and_an_unknown_module_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    std::fs::create_dir(folder.path().join("low")).unwrap();
+    write("low/mod.rs", "use crate::low::inside;\nuse crate::high::{A, B};\n");
+    write("high.rs", "use crate::low;\n");
+    write("box_in_the_hall.rs", "");
+    let found = upward(folder.path(), &["low", "high"]);
+    let found: Vec<&str> = found.iter().map(String::as_str).collect();
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found[0].ends_with("low/mod.rs imports high"), "{found:?}");
+    assert_eq!(found[1], "box_in_the_hall has no place in the order");
+}
+
+/// The mechanics run anywhere.
+#[test]
+fn the_mechanics_use_nothing_of_one_operating_system() {
+    for module in MECHANICS {
+        for file in files_of(&project().join("crates/core/src"), module) {
+            let text = std::fs::read_to_string(&file).unwrap();
+            assert!(!text.contains("std::os::"), "{}", file.display());
+        }
+    }
+}
