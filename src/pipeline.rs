@@ -324,6 +324,17 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
     Ok(states)
 }
 
+/// All that determines the result of every stage, given the results in the folder `out`.
+///
+/// # Errors
+/// As [`status`].
+pub fn identities(recipe: &Recipe, out: &Path) -> Result<Vec<Identity>, PipelineError> {
+    let view = RunView::of(out);
+    let plan = Plan::new(recipe, None)?;
+    let identity = |stage| Ok(plan.identity(stage, &view)?);
+    plan.stages().into_iter().map(identity).collect()
+}
+
 fn compute(
     stage: Stage,
     plan: &Plan,

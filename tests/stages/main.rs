@@ -14,6 +14,7 @@ mod golden;
 mod hybrid;
 mod instrument_files;
 mod interruption;
+mod keys;
 mod metrology;
 mod multilevel;
 mod reliability;
