@@ -4,6 +4,7 @@
 use asperity::numerics::Interrupt;
 use asperity::pipeline::{self, Selection};
 use asperity::recipe::Recipe;
+use asperity::stages;
 use asperity::stages::Stage;
 use asperity::surface::correlation::{correlate_scans, log_spaced_lags};
 use asperity::surface::parameters::AverageRoughness;
@@ -134,8 +135,8 @@ fn stages(criterion: &mut Criterion) {
     };
     let mut group = criterion.benchmark_group("stages 30 x 160000");
     group.sample_size(10);
-    group.bench_function("ingest", |bench| bench.iter(|| stage(Stage::Ingest)));
-    group.bench_function("characterise", |bench| bench.iter(|| stage(Stage::Characterise)));
+    group.bench_function("ingest", |bench| bench.iter(|| stage(stages::ingest::STAGE)));
+    group.bench_function("characterise", |bench| bench.iter(|| stage(stages::characterise::STAGE)));
     group.finish();
 }
 

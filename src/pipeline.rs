@@ -3,18 +3,13 @@
 
 mod plan;
 
-use crate::artifact::{
-    ArtifactError, Identity, Manifest, RunFolder, RunView, SOLVES_FOLDER, SolveStore,
-};
+use crate::artifact::{ArtifactError, Identity, Manifest, RunFolder, RunView};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
-use crate::recipe::{Recipe, Work};
+use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::stages::ingest::ScanFile;
-use crate::stages::{
-    Context, Stage, StageError, Watch, approximate, bem, characterise, fem, hybrid, ingest, micro,
-    multilevel, realise, sinusoid, tables,
-};
+use crate::stages::{Context, Request, Stage, StageError, Watch};
 use plan::Plan;
 use serde_json::Value;
 use std::path::Path;
@@ -32,12 +27,6 @@ pub struct Selection {
     pub from: Option<Stage>,
     /// Compute this stage even if it is up to date.
     pub force: Option<Stage>,
-}
-
-impl Selection {
-    fn includes(self, stage: Stage) -> bool {
-        self.only.is_none_or(|only| only == stage) && self.from.is_none_or(|from| from <= stage)
-    }
 }
 
 /// What happens during a run.
@@ -166,9 +155,22 @@ impl<'a> Ready<'a> {
         out: &Path,
         selection: Selection,
     ) -> Result<Self, PipelineError> {
-        let plan = Plan::new(recipe, None)?;
+        Self::with_stages(recipe, out, selection, &Stage::ALL)
+    }
+
+    /// The same with other stages than those of the program, in the order of the data.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_stages(
+        recipe: &'a Recipe,
+        out: &Path,
+        selection: Selection,
+        stages: &'a [Stage],
+    ) -> Result<Self, PipelineError> {
+        let plan = Plan::new(recipe, None, stages)?;
         plan.check(selection)?;
-        check_places(out, plan.stages().into_iter().filter(|stage| selection.includes(*stage)))?;
+        check_places(out, selected(&plan, selection))?;
         Ok(Self { plan, selection })
     }
 
@@ -218,9 +220,9 @@ pub fn run_shared(
     interrupted: &Interrupt,
     observer: &(dyn Fn(Event) + Sync),
 ) -> Result<(), PipelineError> {
-    let plan = Plan::new(recipe, Some(scans))?;
+    let plan = Plan::new(recipe, Some(scans), &Stage::ALL)?;
     plan.check(selection)?;
-    check_places(out, plan.stages().into_iter().filter(|stage| selection.includes(*stage)))?;
+    check_places(out, selected(&plan, selection))?;
     let folder = RunFolder::share(out)?;
     bring_up_to_date(&plan, &folder, selection, interrupted, observer)
 }
@@ -230,7 +232,7 @@ pub fn run_shared(
 /// # Errors
 /// As [`run`].
 pub fn check(recipe: &Recipe, scans: &[ScanFile]) -> Result<(), PipelineError> {
-    Plan::new(recipe, Some(scans)).map(drop)
+    Plan::new(recipe, Some(scans), &Stage::ALL).map(drop)
 }
 
 /// The stages of a recipe, in the order of the data.
@@ -238,7 +240,11 @@ pub fn check(recipe: &Recipe, scans: &[ScanFile]) -> Result<(), PipelineError> {
 /// # Errors
 /// [`InvalidRecipe`] for a recipe that is none.
 pub fn stages(recipe: &Recipe) -> Result<Vec<Stage>, InvalidRecipe> {
-    Ok(plan::stages(recipe.work()?))
+    Ok(plan::stages(&Request::without_files(recipe.job()?), &Stage::ALL))
+}
+
+fn selected(plan: &Plan, selection: Selection) -> Vec<Stage> {
+    plan.stages().into_iter().filter(|stage| plan.selects(selection, *stage)).collect()
 }
 
 fn bring_up_to_date(
@@ -251,11 +257,12 @@ fn bring_up_to_date(
     let mut checked = false;
     for stage in plan.stages() {
         let in_stage = |source| PipelineError::Stage { stage, source: Box::new(source) };
-        let identity = plan.identity(stage, folder)?;
+        let Some(planned) = plan.planned(stage) else { continue };
+        let identity = plan.identity(stage, &planned, folder)?;
         let state = state(stage, &identity, folder)?;
-        if !selection.includes(stage) {
-            let mut selected = plan.stages().into_iter().filter(|stage| selection.includes(*stage));
-            let reader = selected.find(|selected| plan.upstream(*selected).contains(&stage));
+        if !plan.selects(selection, stage) {
+            let mut selected = selected(plan, selection).into_iter();
+            let reader = selected.find(|selected| plan.upstream(*selected).contains(stage.name()));
             if let (State::Stale(reasons), Some(selected)) = (&state, reader) {
                 let reason = reasons.join("; ");
                 return Err(PipelineError::StaleInput { selected, stage, reason });
@@ -271,9 +278,10 @@ fn bring_up_to_date(
         }
         if !checked {
             // Before anything is computed: this stage and those that may follow from it.
-            let later = plan.stages().into_iter().filter(|later| *later >= stage);
-            for later in later.filter(|later| selection.includes(*later)) {
-                folder.check_place(later.name())?;
+            for later in selected(plan, selection) {
+                if plan.is_up_to(stage, later) {
+                    folder.check_place(later.name())?;
+                }
             }
             checked = true;
         }
@@ -286,7 +294,8 @@ fn bring_up_to_date(
                 interrupted,
             },
         };
-        let warnings = compute(stage, plan, folder, selection, &mut context).map_err(in_stage)?;
+        let afresh = selection.force == Some(stage);
+        let warnings = planned.compute(folder, afresh, &mut context).map_err(in_stage)?;
         context.check_interrupt().map_err(in_stage)?;
         let outputs = context.pending.outputs().to_vec();
         let seconds = start.elapsed().as_secs_f64();
@@ -303,13 +312,14 @@ fn bring_up_to_date(
 /// [`PipelineError`] for scans, a rubber or a manifest that cannot be read.
 pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, PipelineError> {
     let view = RunView::of(out);
-    let plan = Plan::new(recipe, None)?;
+    let plan = Plan::new(recipe, None, &Stage::ALL)?;
     let mut states: Vec<(Stage, State)> = Vec::new();
     for stage in plan.stages() {
+        let Some(planned) = plan.planned(stage) else { continue };
         let upstream = plan.upstream(stage);
         let before = states
             .iter()
-            .find(|(before, state)| *state != State::Fresh && upstream.contains(before));
+            .find(|(before, state)| *state != State::Fresh && upstream.contains(before.name()));
         let state = match before {
             // What a stage would read is not known before those it reads from are up to date.
             Some((before, _)) => State::Stale(vec![match view.stage_manifest(stage.name()) {
@@ -317,7 +327,7 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
                 Ok(None) => NOT_COMPUTED.into(),
                 Err(error) => error.to_string(),
             }]),
-            None => state(stage, &plan.identity(stage, &view)?, &view)?,
+            None => state(stage, &plan.identity(stage, &planned, &view)?, &view)?,
         };
         states.push((stage, state));
     }
@@ -330,89 +340,9 @@ pub fn status(recipe: &Recipe, out: &Path) -> Result<Vec<(Stage, State)>, Pipeli
 /// As [`status`].
 pub fn identities(recipe: &Recipe, out: &Path) -> Result<Vec<Identity>, PipelineError> {
     let view = RunView::of(out);
-    let plan = Plan::new(recipe, None)?;
-    let identity = |stage| Ok(plan.identity(stage, &view)?);
-    plan.stages().into_iter().map(identity).collect()
-}
-
-fn compute(
-    stage: Stage,
-    plan: &Plan,
-    folder: &RunFolder,
-    selection: Selection,
-    context: &mut Context,
-) -> Result<Vec<String>, StageError> {
-    let forced = selection.force == Some(stage);
-    let chain = match plan.work {
-        Work::Chain(chain) => chain,
-        Work::Sinusoid(study) => {
-            return sinusoid::run(
-                study,
-                &plan.material.rubber,
-                &solve_store(folder, forced)?,
-                context,
-            );
-        }
-    };
-    match stage {
-        Stage::Ingest => match chain.ingest {
-            Some(ingest) => ingest::run(ingest, &plan.scans, context),
-            None => Ok(Vec::new()),
-        },
-        Stage::Characterise => characterise::run(chain.characterise, folder, context),
-        Stage::Approximate => approximate::run(chain.approximate, folder, context),
-        Stage::Realise => realise::run(chain.realise, folder, context),
-        Stage::Bem => {
-            let store = solve_store(folder, forced)?;
-            bem::run(chain.bem, &plan.material, folder, &store, context)
-        }
-        Stage::Micro => match chain.micro {
-            Some(micro) => {
-                let store = solve_store(folder, forced)?;
-                micro::run(micro, &plan.material.rubber, folder, &store, context)
-            }
-            None => Ok(Vec::new()),
-        },
-        Stage::Hybrid => match chain.micro {
-            Some(micro) => {
-                hybrid::run(&chain.hybrid, micro, &plan.material.rubber, folder, context)
-            }
-            None => Ok(Vec::new()),
-        },
-        Stage::Fem => match chain.fem {
-            Some(fem) => {
-                let store = solve_store(folder, forced)?;
-                fem::run(fem, chain.bem, &plan.material.rubber, folder, &store, context)
-            }
-            None => Ok(Vec::new()),
-        },
-        Stage::Multilevel => match chain.multilevel {
-            Some(multilevel) => {
-                let store = solve_store(folder, forced)?;
-                let rubber = &plan.material.rubber;
-                multilevel::run(multilevel, chain.bem, rubber, folder, &store, context)
-            }
-            None => Ok(Vec::new()),
-        },
-        Stage::Tables => {
-            let with = tables::Models {
-                hybrid: chain.micro.map(|micro| tables::Corrected {
-                    rms_slope_threshold: micro.rms_slope_threshold,
-                    rules: chain.hybrid,
-                }),
-                fem: chain.fem.is_some(),
-                multilevel: chain.multilevel.is_some(),
-            };
-            tables::run(chain.tables, with, &plan.material.rubber, folder, context)
-        }
-        Stage::Sinusoid => unreachable!("no stage of the chain"),
-    }
-}
-
-/// The store of single solves; a stage that is to be computed afresh does not find those of before.
-fn solve_store(folder: &RunFolder, forced: bool) -> Result<SolveStore, StageError> {
-    let store = SolveStore::open(folder.path().join(SOLVES_FOLDER))?;
-    Ok(if forced { store.anew() } else { store })
+    let plan = Plan::new(recipe, None, &Stage::ALL)?;
+    let planned = plan.stages().into_iter().filter_map(|stage| Some((stage, plan.planned(stage)?)));
+    planned.map(|(stage, planned)| Ok(plan.identity(stage, &planned, &view)?)).collect()
 }
 
 /// Compares the result that is there with what is asked for.

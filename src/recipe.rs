@@ -11,6 +11,7 @@ use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::files::{self, TomlError};
 use crate::requirement::{InvalidRecipe, require};
 use crate::stages::{
+    Chain, Job,
     approximate::Approximate,
     bem::Bem,
     characterise::Characterise,
@@ -80,40 +81,6 @@ pub struct Recipe {
     /// Lists of specimens, rubbers, temperatures and seeds: a case for every combination.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sweep: Option<Sweep>,
-}
-
-/// What a recipe asks for.
-#[derive(Debug, Clone, Copy)]
-pub enum Work<'a> {
-    /// From scans, or waves that it states, to friction tables.
-    Chain(Chain<'a>),
-    /// The study of one sine wave.
-    Sinusoid(&'a Sinusoid),
-}
-
-/// The sections of the chain from scans to tables.
-#[derive(Debug, Clone, Copy)]
-pub struct Chain<'a> {
-    /// Section `[ingest]`, if the recipe does not state its waves itself.
-    pub ingest: Option<&'a Ingest>,
-    /// Section `[characterise]`.
-    pub characterise: &'a Characterise,
-    /// Section `[approximate]`.
-    pub approximate: &'a Approximate,
-    /// Section `[realise]`.
-    pub realise: &'a Realise,
-    /// Section `[bem]`.
-    pub bem: &'a Bem,
-    /// Section `[micro]`, if friction is to be corrected.
-    pub micro: Option<&'a Micro>,
-    /// Section `[hybrid]`.
-    pub hybrid: Hybrid,
-    /// Section `[fem]`, if all waves are to be solved at finite deformation.
-    pub fem: Option<&'a Fem>,
-    /// Section `[multilevel]`, if averages at finite deformation are to be estimated.
-    pub multilevel: Option<&'a Multilevel>,
-    /// Section `[tables]`.
-    pub tables: &'a Tables,
 }
 
 impl Recipe {
@@ -257,12 +224,12 @@ impl Recipe {
     /// # Errors
     /// [`InvalidRecipe::MissingSection`], [`InvalidRecipe::SectionBesideSinusoid`],
     /// [`InvalidRecipe::SeveralCases`].
-    pub fn work(&self) -> Result<Work<'_>, InvalidRecipe> {
+    pub fn job(&self) -> Result<Job<'_>, InvalidRecipe> {
         if self.sweep.is_some() && self.sinusoid.is_none() {
             return Err(InvalidRecipe::SeveralCases { cases: self.cases()?.len() });
         }
         let Some(sinusoid) = &self.sinusoid else {
-            return self.chain().map(Work::Chain);
+            return self.chain().map(Job::Chain);
         };
         let others = [
             ("ingest", self.ingest.is_some()),
@@ -279,7 +246,7 @@ impl Recipe {
         ];
         match others.into_iter().find(|(_, present)| *present) {
             Some((section, _)) => Err(InvalidRecipe::SectionBesideSinusoid { section }),
-            None => Ok(Work::Sinusoid(sinusoid)),
+            None => Ok(Job::Sinusoid(sinusoid)),
         }
     }
 
@@ -308,9 +275,9 @@ impl Recipe {
             // All cases are checked by what they have in common.
             return self.cases()?.first().map_or(Ok(()), |case| case.recipe.check());
         }
-        match self.work()? {
-            Work::Chain(chain) => chain.check(),
-            Work::Sinusoid(sinusoid) => sinusoid.check(),
+        match self.job()? {
+            Job::Chain(chain) => chain.check(),
+            Job::Sinusoid(sinusoid) => sinusoid.check(),
         }
     }
 }

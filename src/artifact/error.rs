@@ -33,6 +33,15 @@ pub enum ArtifactError {
         /// What the decoder stumbled over.
         reason: String,
     },
+    /// A stage reads what it does not declare, so that the key of its result would not know it: a mistake in the code
+    /// of the stage.
+    #[error("a stage reads {stage}/{file} without declaring it: add it to what its contract reads")]
+    Undeclared {
+        /// The stage whose result is read.
+        stage: String,
+        /// The file.
+        file: String,
+    },
     /// The format library refused to write.
     #[error("cannot write {}: {reason}; free some space, or give yourself write access to its folder", .path.display())]
     Unwritable {
@@ -211,6 +220,7 @@ impl HasKind for ArtifactError {
             | Self::NoResult { .. }
             | Self::NoSuchOutput { .. } => ErrorKind::Input,
             Self::Unwritable { .. }
+            | Self::Undeclared { .. }
             | Self::NotANumber { .. }
             | Self::RowType { .. }
             | Self::Dataset { .. }

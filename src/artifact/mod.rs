@@ -47,7 +47,7 @@ pub use schema::{check_or_write, table_schema};
 pub(crate) use solves::write_by_rename;
 pub use solves::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, read_pack_info};
 pub use solves::{SOLVE_SCHEMA, SolveStore, Solves, StoredSolve, read_stored_solve};
-pub use store::{Pending, RunFolder, RunView, SOLVES_FOLDER};
+pub use store::{Pending, ResultFile, RunFolder, RunView, SOLVES_FOLDER};
 pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
 
 /// Version of the tool that writes an artifact; recorded in every file and no part of any digest.

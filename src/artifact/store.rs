@@ -29,12 +29,30 @@ pub const SOLVES_FOLDER: &str = "solves";
 #[derive(Debug)]
 pub struct RunView {
     path: PathBuf,
+    /// The files that may be read; all if `None`.
+    declared: Option<Vec<ResultFile>>,
+}
+
+/// A file of the result of a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ResultFile {
+    /// Name of the stage.
+    pub stage: &'static str,
+    /// Name of the file.
+    pub file: &'static str,
 }
 
 impl RunView {
     /// View of the folder, which need not exist yet.
     pub fn of(path: impl Into<PathBuf>) -> Self {
-        Self { path: path.into() }
+        Self { path: path.into(), declared: None }
+    }
+
+    /// The same folder, of which only these files may be read: what a stage reads without declaring it would be
+    /// missing in the key of its result.
+    #[must_use]
+    pub fn declaring(&self, files: Vec<ResultFile>) -> Self {
+        Self { path: self.path.clone(), declared: Some(files) }
     }
 
     /// The output folder.
@@ -151,6 +169,12 @@ impl RunView {
     }
 
     fn finished_output(&self, stage: &str, file: &str) -> Result<Output, ArtifactError> {
+        if let Some(declared) = &self.declared
+            && !declared.iter().any(|known| (known.stage, known.file) == (stage, file))
+        {
+            let (stage, file) = (stage.to_owned(), file.to_owned());
+            return Err(ArtifactError::Undeclared { stage, file });
+        }
         let manifest = self.finished(stage)?;
         manifest.output(file).cloned().ok_or_else(|| {
             let names: Vec<_> = manifest.outputs.iter().map(|o| o.file.as_str()).collect();
@@ -221,7 +245,7 @@ impl RunFolder {
         fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
         let lock = lock::take(&path)?;
         own::clear_leftovers(&path)?;
-        Ok(Self { view: RunView { path }, lock: Some(lock) })
+        Ok(Self { view: RunView { path, declared: None }, lock: Some(lock) })
     }
 
     /// Creates the folder if needed, for one of several processes on any number of machines that bring it up
@@ -236,7 +260,7 @@ impl RunFolder {
     pub fn share(path: impl Into<PathBuf>) -> Result<Self, ArtifactError> {
         let path = path.into();
         fs::create_dir_all(&path).map_err(ArtifactError::io("create", &path))?;
-        Ok(Self { view: RunView { path }, lock: None })
+        Ok(Self { view: RunView { path, declared: None }, lock: None })
     }
 
     /// Starts a result of the stage in a temporary folder; dropping it leaves the old result.

@@ -97,7 +97,7 @@ mod tests {
     use crate::contact::ContactError;
     use crate::pipeline::PipelineError;
     use crate::scans::{FileError, FileProblem};
-    use crate::stages::{SolveError, Stage, StageError};
+    use crate::stages::{self, SolveError, StageError};
 
     #[derive(Debug, thiserror::Error)]
     #[error("{text}")]
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(CliError::Interrupted.exit_code(), 130);
         // The same through any number of layers.
         let in_stage =
-            |source| PipelineError::Stage { stage: Stage::Bem, source: Box::new(source) };
+            |source| PipelineError::Stage { stage: stages::bem::STAGE, source: Box::new(source) };
         let solve = |source| StageError::Solve { problem: "p".into(), source: Box::new(source) };
         let unconverged = in_stage(solve(SolveError::Contact(unconverged)));
         assert_eq!(CliError::from(unconverged).exit_code(), 1);

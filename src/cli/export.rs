@@ -309,7 +309,7 @@ impl Export {
 /// All tables of a run, as `stage/table`.
 fn all_tables(view: &RunView) -> Vec<String> {
     let mut tables = Vec::new();
-    for stage in Stage::CHAIN.into_iter().chain([Stage::Sinusoid]) {
+    for stage in Stage::ALL.into_iter() {
         // One stage with a damaged manifest leaves those of the others.
         let manifest = view.stage_manifest(stage.name()).ok().flatten();
         let outputs = manifest.into_iter().flat_map(|manifest| manifest.outputs);

@@ -199,7 +199,7 @@ impl LastRun {
 
     /// Why results are not what the recipe asks for, by stage; nothing of stages that have none.
     pub(super) fn doubts(&self, view: &RunView) -> BTreeMap<Stage, String> {
-        let stages = Stage::CHAIN.into_iter().chain([Stage::Sinusoid]);
+        let stages = Stage::ALL.into_iter();
         let there = stages.filter(|stage| view.path().join(stage.name()).exists());
         there.filter_map(|stage| Some((stage, self.doubt(view.path(), stage.name())?))).collect()
     }

@@ -1,5 +1,6 @@
 //! `asperity run`: a recipe from scans to tables.
 
+use crate::stages;
 use clap::Args;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -105,7 +106,7 @@ impl Run {
                 Event::Finished(stage, manifest) => {
                     progress.finish();
                     note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
-                    if stage == Stage::Ingest {
+                    if stage == stages::ingest::STAGE {
                         cleaned(quiet, &out);
                     }
                     warn(quiet, manifest);

@@ -174,7 +174,7 @@ fn wrong_input(view: &RunView, stage: &str, input: &Input) -> Option<String> {
 }
 
 fn is_stage(name: &str) -> bool {
-    let stages = Stage::CHAIN.iter().chain([&Stage::Sinusoid]);
+    let stages = Stage::ALL.iter();
     name == sweep::STAGE || stages.into_iter().any(|stage| stage.name() == name)
 }
 

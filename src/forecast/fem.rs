@@ -2,7 +2,7 @@
 
 use super::{CurveForecast, Trial};
 use crate::fem::cost::solves_of_curve;
-use crate::recipe::Chain;
+use crate::stages::Chain;
 use crate::stages::fem::{self, Fem};
 use serde::Serialize;
 

@@ -20,13 +20,15 @@ use crate::artifact::{ArtifactError, RunView, SolveStore};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
 use crate::pipeline::{self, PipelineError, Selection};
-use crate::recipe::{Chain, Recipe, Work};
+use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
+use crate::stages;
 use crate::stages::bem::{
     self, CURVES_FILE, CurveRow, FIRST_REALISATIONS, SOLVES_FILE, SolveRow, realisations_needed,
 };
 use crate::stages::realise::{Surface, read_surfaces};
+use crate::stages::{Chain, Job};
 use crate::stages::{Stage, StageError, Watch};
 use serde::Serialize;
 use std::path::Path;
@@ -130,9 +132,9 @@ pub fn forecast(
     threads: usize,
     interrupted: &Interrupt,
 ) -> Result<Forecast, ForecastError> {
-    let chain = match recipe.work()? {
-        Work::Chain(chain) => chain,
-        Work::Sinusoid(_) => return Err(ForecastError::Sinusoid),
+    let chain = match recipe.job()? {
+        Job::Chain(chain) => chain,
+        Job::Sinusoid(_) => return Err(ForecastError::Sinusoid),
     };
     let folder = tempfile::tempdir().map_err(ForecastError::Folder)?;
     let (mut stages, bem_seconds) = run_trial(recipe, folder.path(), interrupted)?;
@@ -144,29 +146,30 @@ pub fn forecast(
     let total: f64 = curves.iter().map(|curve| f64::from(curve.realisations)).sum();
     let busy = (tried / threads as f64).min(1.0);
     let half_space = bem_seconds * (total / tried * busy).max(1.0);
-    stages.push(StageForecast { stage: Stage::Bem, seconds: Some(half_space) });
+    stages.push(StageForecast { stage: stages::bem::STAGE, seconds: Some(half_space) });
     let mut microscales = Vec::new();
     if let Some(parameters) = chain.micro {
         microscales = micro::microscales(parameters, &trial, &curves, interrupted)?;
         let seconds = micro::seconds(&microscales, threads);
-        stages.push(StageForecast { stage: Stage::Micro, seconds: Some(seconds) });
+        stages.push(StageForecast { stage: stages::micro::STAGE, seconds: Some(seconds) });
         // The macro surfaces under the local law: one contact, on a coarser grid, for each value of the
         // table, a fifth of the half-space in the main job.
-        stages.push(StageForecast { stage: Stage::Hybrid, seconds: Some(0.2 * half_space) });
+        stages
+            .push(StageForecast { stage: stages::hybrid::STAGE, seconds: Some(0.2 * half_space) });
     }
     let mut all_waves = Vec::new();
     if let Some(parameters) = chain.fem {
         all_waves = fem::curves(parameters, &chain, &trial, &curves);
         let seconds = fem::seconds(&all_waves, threads);
-        stages.push(StageForecast { stage: Stage::Fem, seconds: Some(seconds) });
+        stages.push(StageForecast { stage: stages::fem::STAGE, seconds: Some(seconds) });
     }
     let mut pairs = Vec::new();
     if let Some(parameters) = chain.multilevel {
         pairs = multilevel::pairs(parameters, &chain, &trial, &curves);
         let seconds = multilevel::seconds(&pairs, threads);
-        stages.push(StageForecast { stage: Stage::Multilevel, seconds: Some(seconds) });
+        stages.push(StageForecast { stage: stages::multilevel::STAGE, seconds: Some(seconds) });
     }
-    stages.push(StageForecast { stage: Stage::Tables, seconds: Some(0.0) });
+    stages.push(StageForecast { stage: stages::tables::STAGE, seconds: Some(0.0) });
     let most = curves.iter().map(|curve| curve.grid_points[1]).max().unwrap_or(0);
     // Each thread keeps the contacts of a curve on all of its grids: twice the finest one.
     let points = 2.0 * most as f64 * threads as f64;
@@ -193,14 +196,14 @@ fn run_trial(
     let trial = shortened(recipe);
     let (mut stages, mut bem_seconds) = (Vec::new(), 0.0);
     for (stage, _) in pipeline::status(&trial, folder)? {
-        if stage == Stage::Tables {
+        if stage == stages::tables::STAGE {
             continue;
         }
-        if stage == Stage::Bem {
+        if stage == stages::bem::STAGE {
             demand_attainable(recipe, folder, interrupted)?;
         }
         let seconds = computed(&trial, folder, stage, interrupted)?;
-        if stage == Stage::Bem {
+        if stage == stages::bem::STAGE {
             bem_seconds = seconds;
         } else {
             stages.push(StageForecast { stage, seconds: Some(seconds) });

@@ -1,64 +1,53 @@
 //! The stages of a recipe, and all that determines the result of each.
 
 use super::{PipelineError, Selection};
-use crate::artifact::{ArtifactError, Identity, Input, RunView, SchemaVersion};
-use crate::recipe::{Chain, Recipe, Work};
+use crate::artifact::{ArtifactError, Identity, RunView};
+use crate::recipe::Recipe;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber, RubberData};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Stage, StageError, approximate, bem, characterise, fem, hybrid, ingest, micro, multilevel,
-    realise, sinusoid, tables,
+    Job, Planned, Request, Stage, StageError, bem, fem, ingest, micro, multilevel, sinusoid, tables,
 };
-use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// What the recipe asks for with what it refers to.
+/// What the recipe asks for with what it refers to, and the stages that may do it.
 pub(super) struct Plan<'a> {
-    pub work: Work<'a>,
-    pub scans: Vec<ScanFile>,
-    pub material: RubberData,
-    published: Vec<Input>,
+    request: Request<'a>,
+    known: &'a [Stage],
 }
 
 impl<'a> Plan<'a> {
-    /// With the scans of the recipe, if they are known already: to digest them takes time.
-    pub fn new(recipe: &'a Recipe, known: Option<&[ScanFile]>) -> Result<Self, PipelineError> {
-        let of = |stage| move |source| PipelineError::Stage { stage, source: Box::new(source) };
-        let work = recipe.work()?;
-        let (mut scans, mut published) = (Vec::new(), Vec::new());
-        let material = match work {
-            Work::Chain(chain) => {
-                if let Some(ingest) = chain.ingest {
-                    scans = match known {
-                        Some(known) => known.to_vec(),
-                        None => ingest::find_scans(&ingest.scans).map_err(of(Stage::Ingest))?,
-                    };
-                }
-                published = tables::inputs(chain.tables).map_err(of(Stage::Tables))?;
-                let material = bem::rubber(chain.bem).map_err(of(Stage::Bem))?;
-                let finite = [
-                    (chain.micro.is_some(), Stage::Micro),
-                    (chain.fem.is_some(), Stage::Fem),
-                    (chain.multilevel.is_some(), Stage::Multilevel),
-                ];
-                if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
-                    check_finite_strain(&material.rubber, &chain.bem.rubber).map_err(of(stage))?;
-                }
-                material
-            }
-            Work::Sinusoid(study) => {
-                let rubber = sinusoid::rubber(study).map_err(of(Stage::Sinusoid))?;
-                check_finite_strain(&rubber, &study.rubber).map_err(of(Stage::Sinusoid))?;
-                RubberData::from(rubber)
-            }
-        };
-        Ok(Self { work, scans, material, published })
+    /// With the scans of the recipe, if they are known already: to digest them takes time. `known` are the stages of
+    /// the program in the order of the data.
+    pub fn new(
+        recipe: &'a Recipe,
+        scans: Option<&[ScanFile]>,
+        known: &'a [Stage],
+    ) -> Result<Self, PipelineError> {
+        Ok(Self { request: request(recipe, scans)?, known })
     }
 
     /// The stages of the recipe.
     pub fn stages(&self) -> Vec<Stage> {
-        stages(self.work)
+        stages(&self.request, self.known)
+    }
+
+    /// What a stage does for the recipe, if the recipe asks for it.
+    pub fn planned(&self, stage: Stage) -> Option<Planned<'_>> {
+        stage.plan(&self.request)
+    }
+
+    /// Whether one stage comes before another in the order of the data, or is it.
+    pub fn is_up_to(&self, stage: Stage, other: Stage) -> bool {
+        let place = |stage| self.known.iter().position(|known| *known == stage);
+        place(stage) <= place(other)
+    }
+
+    /// Whether a stage is selected.
+    pub fn selects(&self, selection: Selection, stage: Stage) -> bool {
+        selection.only.is_none_or(|only| only == stage)
+            && selection.from.is_none_or(|from| self.is_up_to(from, stage))
     }
 
     /// Fails for a selected stage that the recipe does not have, and for a forced one that is not
@@ -72,162 +61,90 @@ impl<'a> Plan<'a> {
             }
         }
         match selection.force {
-            Some(forced) if !selection.includes(forced) => {
+            Some(forced) if !self.selects(selection, forced) => {
                 Err(PipelineError::ForcedOutside { forced })
             }
             _ => Ok(()),
         }
     }
 
-    /// All that determines the result of a stage, given the results before it.
-    pub fn identity(&self, stage: Stage, view: &RunView) -> Result<Identity, ArtifactError> {
-        let (stage_revision, output_schemas, parameters, inputs) = match self.work {
-            Work::Chain(chain) => self.chain_identity(chain, stage, view)?,
-            Work::Sinusoid(study) => {
-                let parameters = study.resolved(&self.material.rubber);
-                (sinusoid::REVISION, sinusoid::schemas(), parameters, Vec::new())
-            }
-        };
-        let stage = stage.name().to_owned();
-        Ok(Identity { stage, stage_revision, output_schemas, parameters, inputs })
-    }
-
-    /// The files of other stages that a stage reads.
-    fn reads(&self, stage: Stage) -> Vec<(Stage, &'static str)> {
-        let Work::Chain(chain) = self.work else { return Vec::new() };
-        let surfaces = (Stage::Realise, realise::SURFACES_FILE);
-        let curves = (Stage::Bem, bem::CURVES_FILE);
-        match stage {
-            Stage::Ingest | Stage::Sinusoid => Vec::new(),
-            Stage::Characterise => vec![(Stage::Ingest, ingest::SCANS_FILE)],
-            Stage::Approximate if chain.ingest.is_none() => Vec::new(),
-            Stage::Approximate => vec![(Stage::Characterise, characterise::CORRELATION_FILE)],
-            Stage::Realise => vec![(Stage::Approximate, approximate::WAVES_FILE)],
-            Stage::Bem => vec![surfaces],
-            Stage::Micro | Stage::Fem => vec![surfaces, curves],
-            Stage::Multilevel => vec![surfaces, curves, (Stage::Bem, bem::SOLVES_FILE)],
-            Stage::Hybrid => {
-                let microscale = [micro::SAMPLES_FILE, micro::LAW_FILE];
-                let microscale = microscale.map(|file| (Stage::Micro, file));
-                [surfaces, curves].into_iter().chain(microscale).collect()
-            }
-            Stage::Tables => {
-                let hybrid = chain.micro.map(|_| (Stage::Hybrid, hybrid::HYBRID_FILE));
-                let fem = chain.fem.map(|_| (Stage::Fem, fem::FEM_FILE));
-                let averages = (Stage::Multilevel, multilevel::AVERAGES_FILE);
-                let pairs = (Stage::Multilevel, multilevel::PAIRS_FILE);
-                let multilevel = chain.multilevel.map(|_| [averages, pairs]);
-                let theories = (!chain.tables.theories.is_empty()).then_some(surfaces);
-                let samples = (Stage::Micro, micro::SAMPLES_FILE);
-                let corrections = !chain.tables.published_corrections.is_empty();
-                let corrections = corrections.then_some(samples);
-                let waves = (Stage::Approximate, approximate::WAVES_FILE);
-                let finite = hybrid.into_iter().chain(fem).chain(multilevel.into_iter().flatten());
-                let others = theories.into_iter().chain(corrections);
-                [curves, waves].into_iter().chain(finite).chain(others).collect()
-            }
+    /// All that determines the result of a planned stage, given the results before it.
+    pub fn identity(
+        &self,
+        stage: Stage,
+        planned: &Planned,
+        view: &RunView,
+    ) -> Result<Identity, ArtifactError> {
+        let mut inputs = Vec::new();
+        for read in &planned.reads {
+            let manifest = view.stage_manifest(read.stage)?;
+            inputs.extend(manifest.and_then(|manifest| manifest.input(read.file)));
         }
+        inputs.extend(planned.inputs.iter().cloned());
+        Ok(Identity {
+            stage: stage.name().to_owned(),
+            stage_revision: stage.0.revision,
+            output_schemas: (stage.0.schemas)(),
+            parameters: planned.parameters.clone(),
+            inputs,
+        })
     }
 
-    /// The stages that a result depends on, through any number of others.
-    pub fn upstream(&self, stage: Stage) -> BTreeSet<Stage> {
+    /// Names of the stages that a result depends on, through any number of others.
+    pub fn upstream(&self, stage: Stage) -> BTreeSet<&'static str> {
         let mut found = BTreeSet::new();
         let mut open = vec![stage];
         while let Some(stage) = open.pop() {
-            for (read, _) in self.reads(stage) {
-                if found.insert(read) {
-                    open.push(read);
+            for read in self.planned(stage).into_iter().flat_map(|planned| planned.reads) {
+                if found.insert(read.stage) {
+                    open.extend(self.known.iter().filter(|known| known.name() == read.stage));
                 }
             }
         }
         found
     }
-
-    fn chain_identity(
-        &self,
-        chain: Chain,
-        stage: Stage,
-        view: &RunView,
-    ) -> Result<(u32, Vec<SchemaVersion>, Value, Vec<Input>), ArtifactError> {
-        let mut inputs = Vec::new();
-        for (read, file) in self.reads(stage) {
-            let manifest = view.stage_manifest(read.name())?;
-            inputs.extend(manifest.and_then(|manifest| manifest.input(file)));
-        }
-        let (revision, schemas, parameters) = match stage {
-            Stage::Ingest => {
-                let mut parameters = json!(chain.ingest);
-                // Where the scans are is no parameter: their names and digests are inputs.
-                if let Value::Object(keys) = &mut parameters {
-                    keys.remove("scans");
-                }
-                inputs.extend(ingest::inputs(&self.scans));
-                (ingest::REVISION, ingest::schemas(), parameters)
-            }
-            Stage::Characterise => {
-                (characterise::REVISION, characterise::schemas(), json!(chain.characterise))
-            }
-            Stage::Approximate => {
-                (approximate::REVISION, approximate::schemas(), json!(chain.approximate))
-            }
-            Stage::Realise => (realise::REVISION, realise::schemas(), json!(chain.realise)),
-            Stage::Bem => (bem::REVISION, bem::schemas(), chain.bem.resolved(&self.material)),
-            Stage::Micro => {
-                let parameters = json!({ "micro": chain.micro, "rubber": self.material.rubber });
-                (micro::REVISION, micro::schemas(), parameters)
-            }
-            Stage::Hybrid => {
-                let parameters = json!({ "hybrid": chain.hybrid, "micro": chain.micro, "rubber": self.material.rubber });
-                (hybrid::REVISION, hybrid::schemas(), parameters)
-            }
-            Stage::Fem => {
-                let parameters = json!({
-                    "fem": chain.fem,
-                    "rubber": self.material.rubber,
-                    "speeds_mm_s": chain.bem.speeds_mm_s,
-                    "area_fractions": chain.bem.area_fractions,
-                });
-                (fem::REVISION, fem::schemas(), parameters)
-            }
-            Stage::Multilevel => {
-                let parameters = json!({
-                    "multilevel": chain.multilevel,
-                    "bem": chain.bem.resolved(&self.material),
-                });
-                (multilevel::REVISION, multilevel::schemas(), parameters)
-            }
-            Stage::Tables => {
-                let mut parameters = json!(chain.tables);
-                // Where the published tables are is no parameter: their names and digests are inputs.
-                for key in ["published", "published_corrections"] {
-                    let tables = parameters.get_mut(key).and_then(Value::as_array_mut);
-                    for table in tables.into_iter().flatten().filter_map(Value::as_object_mut) {
-                        table.remove("file");
-                    }
-                }
-                if !chain.tables.theories.is_empty() {
-                    parameters["rubber"] = json!(self.material.rubber);
-                }
-                inputs.extend(self.published.iter().cloned());
-                (tables::REVISION, tables::schemas(), parameters)
-            }
-            Stage::Sinusoid => unreachable!("no stage of the chain"),
-        };
-        Ok((revision, schemas, parameters, inputs))
-    }
 }
 
-/// The stages of a recipe; a chain that states its waves needs no scans.
-pub(super) fn stages(work: Work) -> Vec<Stage> {
-    let Work::Chain(chain) = work else { return vec![Stage::Sinusoid] };
-    let has = |stage: &Stage| match stage {
-        Stage::Ingest | Stage::Characterise => chain.ingest.is_some(),
-        Stage::Micro | Stage::Hybrid => chain.micro.is_some(),
-        Stage::Fem => chain.fem.is_some(),
-        Stage::Multilevel => chain.multilevel.is_some(),
-        _ => true,
+/// The stages that a recipe asks for.
+pub(super) fn stages(request: &Request, known: &[Stage]) -> Vec<Stage> {
+    known.iter().copied().filter(|stage| stage.plan(request).is_some()).collect()
+}
+
+/// Reads what a recipe refers to.
+fn request<'a>(
+    recipe: &'a Recipe,
+    known: Option<&[ScanFile]>,
+) -> Result<Request<'a>, PipelineError> {
+    let of = |stage| move |source| PipelineError::Stage { stage, source: Box::new(source) };
+    let job = recipe.job()?;
+    let (mut scans, mut published) = (Vec::new(), Vec::new());
+    let material = match job {
+        Job::Chain(chain) => {
+            if let Some(ingest) = chain.ingest {
+                scans = match known {
+                    Some(known) => known.to_vec(),
+                    None => ingest::find_scans(&ingest.scans).map_err(of(ingest::STAGE))?,
+                };
+            }
+            published = tables::inputs(chain.tables).map_err(of(tables::STAGE))?;
+            let material = bem::rubber(chain.bem).map_err(of(bem::STAGE))?;
+            let finite = [
+                (chain.micro.is_some(), micro::STAGE),
+                (chain.fem.is_some(), fem::STAGE),
+                (chain.multilevel.is_some(), multilevel::STAGE),
+            ];
+            if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
+                check_finite_strain(&material.rubber, &chain.bem.rubber).map_err(of(stage))?;
+            }
+            material
+        }
+        Job::Sinusoid(study) => {
+            let rubber = sinusoid::rubber(study).map_err(of(sinusoid::STAGE))?;
+            check_finite_strain(&rubber, &study.rubber).map_err(of(sinusoid::STAGE))?;
+            RubberData::from(rubber)
+        }
     };
-    Stage::CHAIN.into_iter().filter(has).collect()
+    Ok(Request { job, scans, material, published })
 }
 
 /// Fails for a rubber that the half-space takes and finite elements do not, before the half-space

@@ -3,7 +3,7 @@
 use super::ReportError;
 use crate::artifact::RunView;
 use crate::report::read::rows;
-use crate::stages::Stage;
+use crate::stages;
 use crate::stages::sinusoid::{
     AGREEMENT_FILE, ASYMPTOTES_FILE, AgreementRow, AsymptoteRow, Model, PEAKS_FILE, POINTS_FILE,
     PRESSURES_FILE, PeakRow, PointRow,
@@ -42,7 +42,7 @@ impl Study {
     /// # Errors
     /// [`ReportError`] if its tables cannot be read.
     pub fn read(run: &RunView) -> Result<Self, ReportError> {
-        let stage = Stage::Sinusoid.name();
+        let stage = stages::sinusoid::STAGE.name();
         Ok(Self {
             points: run.read_table(stage, POINTS_FILE)?.0,
             pressures: rows(run, stage, PRESSURES_FILE)?.unwrap_or_default(),

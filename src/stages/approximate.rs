@@ -3,8 +3,9 @@
 use super::characterise::{
     AVERAGE, CORRELATION_FILE, CorrelationRow, RELIABLE_KEY, WINDOW_LENGTH_KEY, length_in,
 };
-use super::{Context, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::{Stage, StageError, schema_of};
+use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::jackknife_95;
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::SineScale;
@@ -14,10 +15,34 @@ use crate::surface::sine_fit::{SineFit, fit_sines, superposed_correlation};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 3;
+
+/// The amplitudes, which other stages read.
+pub(crate) const WAVES: ResultFile = ResultFile { stage: "approximate", file: WAVES_FILE };
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "approximate",
+    summary: "Superposed sines in place of the scans",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    let run =
+        |inputs: &Inputs, context: &mut Context| run(chain.approximate, &inputs.results, context);
+    // A chain that states its waves needs no scans.
+    let correlation = chain.ingest.map(|_| super::characterise::CORRELATION);
+    Some(Planned::new(json!(chain.approximate), run).reading(correlation))
+}
 
 /// Section `[approximate]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

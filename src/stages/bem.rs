@@ -8,9 +8,10 @@ mod rows;
 mod task;
 mod work;
 
+use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError, Watch};
-use crate::artifact::{ArrayDataset, Metadata, Pending, RunView, SolveStore, Storage};
+use super::{Stage, StageError, Watch};
+use crate::artifact::{ArrayDataset, Metadata, Pending, ResultFile, RunView, SolveStore, Storage};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
@@ -32,6 +33,31 @@ use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 4;
+
+/// Friction over contact area, which other stages read.
+pub(crate) const CURVES: ResultFile = ResultFile { stage: "bem", file: CURVES_FILE };
+/// The solved contacts, which other stages read.
+pub(crate) const SOLVES: ResultFile = ResultFile { stage: "bem", file: SOLVES_FILE };
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "bem",
+    summary: "Sliding contact of the half-space",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let bem = request.chain()?.bem;
+    let material = &request.material;
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(bem, material, &inputs.results, &inputs.store()?, context)
+    };
+    Some(Planned::new(bem.resolved(material), run).reading([super::realise::SURFACES]))
+}
 
 const SPEEDS: &str = "one speed or more from 1e-9 to 1e9 mm/s, without repeats";
 

@@ -13,9 +13,10 @@ pub use standards::{
     DEPTH_FILE, DepthRow, PROFILE_FILE, ProfileDepth, ProfileRow, TEXTURE_FILE, TextureRow,
 };
 
+use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::ingest::read_windows;
-use super::{Context, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use super::{Stage, StageError, schema_of};
+use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::LineScan;
@@ -29,9 +30,29 @@ use crate::surface::spectrum::{PowerSpectrum, Window, power_spectra};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 6;
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "characterise",
+    summary: "Roughness of the windows",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    chain.ingest?;
+    let run =
+        |inputs: &Inputs, context: &mut Context| run(chain.characterise, &inputs.results, context);
+    Some(Planned::new(json!(chain.characterise), run).reading([super::ingest::SCANS]))
+}
 
 /// Section `[characterise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -185,6 +206,9 @@ pub const PARAMETERS_FILE: &str = "parameters.arrow";
 pub const AVERAGES_FILE: &str = "averages.arrow";
 /// Correlation at log-spaced lags, per window and averaged: `correlation.arrow`.
 pub const CORRELATION_FILE: &str = "correlation.arrow";
+/// The correlation, which other stages read.
+pub(crate) const CORRELATION: ResultFile =
+    ResultFile { stage: "characterise", file: CORRELATION_FILE };
 /// Self-affine fit, per window and averaged: `self_affine.arrow`.
 pub const SELF_AFFINE_FILE: &str = "self_affine.arrow";
 /// Metadata of [`CORRELATION_FILE`]: length of the shortest window in millimetres.

@@ -4,10 +4,13 @@
 mod curve;
 mod task;
 
-use super::bem::{Bem, CURVES_FILE as BEM_CURVES, CurveRow};
-use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError, Watch, schema_of};
-use crate::artifact::{ArtifactError, Metadata, Row, RunView, SchemaVersion, SolveStore};
+use super::bem::{Bem, CURVES, CURVES_FILE as BEM_CURVES, CurveRow};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::realise::{SURFACES, Surface, read_surfaces};
+use super::{Stage, StageError, Watch, schema_of};
+use crate::artifact::{
+    ArtifactError, Metadata, ResultFile, Row, RunView, SchemaVersion, SolveStore,
+};
 use crate::fem::cost::MeshCost;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
@@ -15,11 +18,41 @@ pub(crate) use curve::CurveResult as FemCurve;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering};
 pub use task::Task;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 9;
+
+/// Friction over contact area, which other stages read.
+pub(crate) const FEM: ResultFile = ResultFile { stage: "fem", file: FEM_FILE };
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "fem",
+    summary: "All waves at finite deformation",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    let (fem, bem, rubber) = (chain.fem?, chain.bem, request.rubber());
+    let parameters = json!({
+        "fem": fem,
+        "rubber": rubber,
+        "speeds_mm_s": bem.speeds_mm_s,
+        "area_fractions": bem.area_fractions,
+    });
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(fem, bem, rubber, &inputs.results, &inputs.store()?, context)
+    };
+    Some(Planned::new(parameters, run).reading([SURFACES, CURVES]))
+}
 
 /// Section `[fem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -8,11 +8,14 @@
 //!
 //! with the local pressures `p_i` of the macro surface under the repulsive law of the microscale.
 
-use super::bem::{CURVES_FILE, CurveRow};
-use super::micro::{LAW_FILE, LawRow, Micro, SAMPLES_FILE, SampleRow, between_samples, law_of};
-use super::realise::{Surface, read_surfaces};
-use super::{Context, SolveError, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use super::bem::{CURVES, CURVES_FILE, CurveRow};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::micro::{
+    LAW, LAW_FILE, LawRow, Micro, SAMPLES, SAMPLES_FILE, SampleRow, between_samples, law_of,
+};
+use super::realise::{SURFACES, Surface, read_surfaces};
+use super::{SolveError, Stage, StageError, schema_of};
+use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
 use crate::multiscale::correction::{CorrectionRule, MeanRule, Microscale, running_mean};
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{
@@ -23,9 +26,34 @@ use crate::rubber::Rubber;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 5;
+
+/// Corrected friction, which other stages read.
+pub(crate) const HYBRID: ResultFile = ResultFile { stage: "hybrid", file: HYBRID_FILE };
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "hybrid",
+    summary: "Friction of the half-space corrected by the microscale",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    let (hybrid, micro, rubber) = (chain.hybrid, chain.micro?, request.rubber());
+    let parameters = json!({ "hybrid": hybrid, "micro": micro, "rubber": rubber });
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(&hybrid, micro, rubber, &inputs.results, context)
+    };
+    Some(Planned::new(parameters, run).reading([SURFACES, CURVES, SAMPLES, LAW]))
+}
 
 /// Section `[hybrid]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -10,10 +10,11 @@ pub use faults::{FAULTS_FILE, FaultRow};
 pub use picture::fault_picture;
 
 use super::characterise::AVERAGE;
-use super::{Context, StageError, schema_of};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::{Stage, StageError, schema_of};
 use crate::artifact::{
     ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Digesting,
-    Input, Metadata, Row, RunView, SchemaVersion, Storage,
+    Input, Metadata, ResultFile, Row, RunView, SchemaVersion, Storage,
 };
 use crate::requirement::{InvalidRecipe, require};
 use crate::scans::file::{CHANNELS, Family, Grid, MapLines, is_instrument, open_channel};
@@ -28,11 +29,34 @@ use picture::write_pictures;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 5;
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "ingest",
+    summary: "Scan files to windows of equal spacing",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let ingest = request.chain()?.ingest?;
+    let mut parameters = json!(ingest);
+    // Where the scans are is no parameter: their names and digests are inputs.
+    if let Value::Object(keys) = &mut parameters {
+        keys.remove("scans");
+    }
+    let run = move |_: &Inputs, context: &mut Context| run(ingest, &request.scans, context);
+    Some(Planned::new(parameters, run).with_inputs(inputs(&request.scans)))
+}
 
 /// Section `[ingest]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -107,6 +131,8 @@ fn is_twelve(pictures: &usize) -> bool {
 
 /// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
 pub const SCANS_FILE: &str = "scans.h5";
+/// The windows, which other stages read.
+pub(crate) const SCANS: ResultFile = ResultFile { stage: "ingest", file: SCANS_FILE };
 /// Schema name of [`SCANS_FILE`].
 pub const SCANS_SCHEMA: &str = "asperity.ingest.scans";
 /// Schema version of [`SCANS_FILE`].

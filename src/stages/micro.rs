@@ -5,10 +5,11 @@ mod curve;
 mod monotony;
 mod task;
 
-use super::bem::{CURVES_FILE, CurveRow};
-use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion, SolveStore};
+use super::bem::{CURVES, CURVES_FILE, CurveRow};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::realise::{SURFACES, Surface, read_surfaces};
+use super::{Stage, StageError, schema_of};
+use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion, SolveStore};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::multiscale::correction::Microscale;
@@ -19,12 +20,39 @@ pub(crate) use curve::law_of;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::sync::atomic::{AtomicU64, Ordering};
 pub(crate) use task::is_of;
 pub use task::{Owner, PressedSurface, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 7;
+
+/// The samples, which other stages read.
+pub(crate) const SAMPLES: ResultFile = ResultFile { stage: "micro", file: SAMPLES_FILE };
+/// The repulsive law, which other stages read.
+pub(crate) const LAW: ResultFile = ResultFile { stage: "micro", file: LAW_FILE };
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "micro",
+    summary: "The steepest waves at finite deformation",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let micro = request.chain()?.micro?;
+    let rubber = request.rubber();
+    let parameters = json!({ "micro": micro, "rubber": rubber });
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(micro, rubber, &inputs.results, &inputs.store()?, context)
+    };
+    Some(Planned::new(parameters, run).reading([SURFACES, CURVES]))
+}
 
 /// Section `[micro]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -16,6 +16,7 @@
 pub mod approximate;
 pub mod bem;
 pub mod characterise;
+pub mod contract;
 pub mod fem;
 pub mod hybrid;
 pub mod ingest;
@@ -25,97 +26,32 @@ pub mod realise;
 pub mod sinusoid;
 pub mod tables;
 
-use crate::artifact::{ArtifactError, Pending, SchemaVersion};
+use crate::artifact::{ArtifactError, SchemaVersion};
 use crate::contact::ContactError;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
+pub use contract::{Chain, Context, Contract, Inputs, Job, Planned, Request};
 use std::path::PathBuf;
 
-/// The stages in the order of the data.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum, serde::Serialize,
-)]
-#[serde(rename_all = "lowercase")]
-pub enum Stage {
-    /// Scan files to windows of equal spacing.
-    Ingest,
-    /// Roughness of the windows.
-    Characterise,
-    /// Superposed sines in place of the scans.
-    Approximate,
-    /// Random-phase realisations.
-    Realise,
-    /// Sliding contact of the half-space.
-    Bem,
-    /// The steepest waves at finite deformation.
-    Micro,
-    /// Friction of the half-space corrected by the microscale.
-    Hybrid,
-    /// All waves at finite deformation.
-    Fem,
-    /// Averages at finite deformation from many realisations on the half-space and few with all waves.
-    Multilevel,
-    /// Averaged friction tables.
-    Tables,
-    /// Three models on one sine; no part of the chain.
-    Sinusoid,
-}
+/// A stage, known by its name.
+#[derive(Clone, Copy)]
+pub struct Stage(pub &'static Contract);
 
 impl Stage {
-    /// The stages from scans to tables in the order of the data.
-    pub const CHAIN: [Self; 10] = [
-        Self::Ingest,
-        Self::Characterise,
-        Self::Approximate,
-        Self::Realise,
-        Self::Bem,
-        Self::Micro,
-        Self::Hybrid,
-        Self::Fem,
-        Self::Multilevel,
-        Self::Tables,
+    /// All stages in the order of the data, the study of one sine last.
+    pub const ALL: [Self; 11] = [
+        ingest::STAGE,
+        characterise::STAGE,
+        approximate::STAGE,
+        realise::STAGE,
+        bem::STAGE,
+        micro::STAGE,
+        hybrid::STAGE,
+        fem::STAGE,
+        multilevel::STAGE,
+        tables::STAGE,
+        sinusoid::STAGE,
     ];
-
-    /// Name in recipes, folders and manifests.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ingest => "ingest",
-            Self::Characterise => "characterise",
-            Self::Approximate => "approximate",
-            Self::Realise => "realise",
-            Self::Bem => "bem",
-            Self::Micro => "micro",
-            Self::Hybrid => "hybrid",
-            Self::Fem => "fem",
-            Self::Multilevel => "multilevel",
-            Self::Tables => "tables",
-            Self::Sinusoid => "sinusoid",
-        }
-    }
-}
-
-impl std::fmt::Display for Stage {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-/// What a stage is given besides its inputs.
-pub struct Context<'a> {
-    /// The folder of the result under way.
-    pub pending: Pending<'a>,
-    /// Who looks on.
-    pub watch: Watch<'a>,
-}
-
-impl Context<'_> {
-    /// Fails if the user has interrupted.
-    ///
-    /// # Errors
-    /// [`StageError::Interrupted`].
-    pub fn check_interrupt(&self) -> Result<(), StageError> {
-        self.watch.check_interrupt()
-    }
 }
 
 /// Progress to whoever looks on, and their interrupt.

@@ -13,11 +13,12 @@ mod rows;
 mod shares;
 mod work;
 
-use super::bem::{Bem, CURVES_FILE as BEM_CURVES, CurveRow, SOLVES_FILE, SolveRow};
+use super::bem::{Bem, CURVES, CURVES_FILE as BEM_CURVES, CurveRow, SOLVES, SOLVES_FILE, SolveRow};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::fem::Fem;
-use super::realise::{Surface, read_surfaces};
-use super::{Context, StageError, Watch};
-use crate::artifact::{Metadata, RunView, SolveStore};
+use super::realise::{SURFACES, Surface, read_surfaces};
+use super::{Stage, StageError, Watch};
+use crate::artifact::{Metadata, ResultFile, RunView, SolveStore};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 pub(crate) use bound::is_negligible;
@@ -29,11 +30,39 @@ pub use rows::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 pub use work::Missing;
 use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 3;
+
+/// The averages and the pairs that they are of, which other stages read.
+pub(crate) const RESULTS: [ResultFile; 2] = [
+    ResultFile { stage: "multilevel", file: AVERAGES_FILE },
+    ResultFile { stage: "multilevel", file: PAIRS_FILE },
+];
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "multilevel",
+    summary: "Averages at finite deformation from many realisations on the half-space and few with all waves",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    let (multilevel, bem, rubber) = (chain.multilevel?, chain.bem, request.rubber());
+    let parameters = json!({ "multilevel": multilevel, "bem": bem.resolved(&request.material) });
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(multilevel, bem, rubber, &inputs.results, &inputs.store()?, context)
+    };
+    Some(Planned::new(parameters, run).reading([SURFACES, CURVES, SOLVES]))
+}
 
 /// Section `[multilevel]` of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,16 +1,38 @@
 //! realise: surfaces of the fitted waves with random phases.
 
 use super::approximate::{ScaleRow, WAVES_FILE};
-use super::{Context, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::{Stage, StageError, schema_of};
+use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::realisation::random_phases;
 use crate::surface::{SineScale, Wave};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 2;
+
+/// The surfaces, which other stages read.
+pub(crate) const SURFACES: ResultFile = ResultFile { stage: "realise", file: SURFACES_FILE };
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "realise",
+    summary: "Random-phase realisations",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    let run = |inputs: &Inputs, context: &mut Context| run(chain.realise, &inputs.results, context);
+    Some(Planned::new(json!(chain.realise), run).reading([super::approximate::WAVES]))
+}
 
 /// Section `[realise]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -15,7 +15,8 @@ mod rows;
 pub use problem::Model;
 pub use rows::{AgreementRow, AsymptoteRow, FieldRow, PeakRow, PointRow};
 
-use super::{Context, StageError, schema_of};
+use super::contract::{Context, Contract, Inputs, Job, Planned, Request};
+use super::{Stage, StageError, schema_of};
 use crate::artifact::{Metadata, SchemaVersion, SolveStore};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{Rubber, RubberData, read_rubber};
@@ -30,6 +31,25 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 5;
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "sinusoid",
+    summary: "Three models on one sine; no part of the chain",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let Job::Sinusoid(study) = request.job else { return None };
+    let rubber = request.rubber();
+    let run =
+        move |inputs: &Inputs, context: &mut Context| run(study, rubber, &inputs.store()?, context);
+    Some(Planned::new(study.resolved(rubber), run))
+}
 
 /// Section `[sinusoid]` of a recipe, which stands alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

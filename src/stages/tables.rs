@@ -10,9 +10,10 @@ mod theories;
 use super::approximate::{ScaleRow, WAVES_FILE};
 use super::bem::{CURVES_FILE, CurveRow};
 use super::characterise::{RELIABLE_KEY, length_in};
+use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::fem::{FEM_FILE, FemCurveRow};
 use super::hybrid::{HYBRID_FILE, Hybrid, HybridRow};
-use super::{Context, StageError, schema_of};
+use super::{Stage, StageError, schema_of};
 use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
@@ -26,12 +27,59 @@ pub use published::{
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::collections::BTreeMap;
 use theories::predictions;
 pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 8;
+
+/// The stage.
+pub const STAGE: Stage = Stage(&CONTRACT);
+
+static CONTRACT: Contract = Contract {
+    name: "tables",
+    summary: "Averaged friction tables",
+    revision: REVISION,
+    schemas,
+    plan,
+};
+
+fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
+    let chain = request.chain()?;
+    let (tables, rubber) = (chain.tables, request.rubber());
+    let models = Models {
+        hybrid: chain.micro.map(|micro| Corrected {
+            rms_slope_threshold: micro.rms_slope_threshold,
+            rules: chain.hybrid,
+        }),
+        fem: chain.fem.is_some(),
+        multilevel: chain.multilevel.is_some(),
+    };
+    let mut parameters = json!(tables);
+    // Where the published tables are is no parameter: their names and digests are inputs.
+    for key in ["published", "published_corrections"] {
+        let tables = parameters.get_mut(key).and_then(serde_json::Value::as_array_mut);
+        for table in tables.into_iter().flatten().filter_map(serde_json::Value::as_object_mut) {
+            table.remove("file");
+        }
+    }
+    if !tables.theories.is_empty() {
+        parameters["rubber"] = json!(rubber);
+    }
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(tables, models, rubber, &inputs.results, context)
+    };
+    let planned = Planned::new(parameters, run)
+        .reading([super::bem::CURVES, super::approximate::WAVES])
+        .reading(chain.micro.map(|_| super::hybrid::HYBRID))
+        .reading(chain.fem.map(|_| super::fem::FEM))
+        .reading(chain.multilevel.map(|_| super::multilevel::RESULTS).into_iter().flatten())
+        .reading((!tables.theories.is_empty()).then_some(super::realise::SURFACES))
+        .reading((!tables.published_corrections.is_empty()).then_some(super::micro::SAMPLES));
+    Some(planned.with_inputs(request.published.clone()))
+}
 
 /// Section `[tables]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -12,8 +12,9 @@ use crate::artifact::{
 };
 use crate::pipeline::{self, Selection};
 use crate::recipe::{Case, Recipe};
+use crate::stages;
 use crate::stages::tables::{self, FrictionRow};
-use crate::stages::{Stage, Watch, schema_of};
+use crate::stages::{Watch, schema_of};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -278,12 +279,12 @@ fn one_case(
 ) -> Result<(Input, Vec<SweepFrictionRow>), SweepError> {
     let folder = prepared.make_case(case)?;
     write_recipe(case, &folder)?;
-    let selection = Selection { from: Some(Stage::Bem), ..Selection::default() };
+    let selection = Selection { from: Some(stages::bem::STAGE), ..Selection::default() };
     let scans = prepared.scans(case);
     pipeline::run_shared(&case.recipe, scans, &folder, selection, watch.interrupted, &|_| ())
         .map_err(of_case(case))?;
     let view = RunView::of(folder);
-    let name = Stage::Tables.name();
+    let name = stages::tables::STAGE.name();
     let (rows, _) = view.read_table::<FrictionRow>(name, tables::FRICTION_FILE)?;
     let manifest = view.stage_manifest(name)?;
     let input = manifest.and_then(|manifest| manifest.input(tables::FRICTION_FILE));

@@ -7,6 +7,7 @@ use crate::artifact::{Digest, RunView, SOLVES_FOLDER, SolveStore};
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Case, Recipe};
 use crate::rubber::{Rubber, RubberData};
+use crate::stages;
 use crate::stages::bem::{self, CURVES_FILE, CurveRow};
 use crate::stages::ingest::{ScanFile, find_scans};
 use crate::stages::realise::{Surface, read_surfaces};
@@ -36,8 +37,12 @@ pub struct Prepared {
 type Scans = BTreeMap<Option<String>, Vec<ScanFile>>;
 
 /// Stages of the surfaces, which cases have in common.
-pub(super) const SURFACE_STAGES: [Stage; 4] =
-    [Stage::Ingest, Stage::Characterise, Stage::Approximate, Stage::Realise];
+pub(super) const SURFACE_STAGES: [Stage; 4] = [
+    stages::ingest::STAGE,
+    stages::characterise::STAGE,
+    stages::approximate::STAGE,
+    stages::realise::STAGE,
+];
 
 impl Prepared {
     /// Brings the surfaces of all specimens and seeds up to date in the folder of a sweep and reads the rubbers.
@@ -92,7 +97,9 @@ impl Prepared {
             let folder = self.layout.surfaces(case);
             let stages = pipeline::stages(&case.recipe)?;
             for stage in SURFACE_STAGES.into_iter().filter(|stage| stages.contains(stage)) {
-                if let (Some(first), true) = (first.get(&case.specimen), stage != Stage::Realise) {
+                if let (Some(first), true) =
+                    (first.get(&case.specimen), stage != stages::realise::STAGE)
+                {
                     self.layout.link(&first.join(stage.name()), &folder.join(stage.name()))?;
                 }
                 self.run_stage(case, folder.clone(), stage, watch)?;
@@ -164,7 +171,7 @@ impl Prepared {
             return Ok(curves.into_iter().map(Task::Bem).map(wanted).collect());
         }
         let folder = self.make_case(case)?;
-        self.run_stage(case, folder.clone(), Stage::Bem, watch)?;
+        self.run_stage(case, folder.clone(), stages::bem::STAGE, watch)?;
         let view = RunView::of(folder);
         let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE)?;
         let mut tasks = Vec::new();
@@ -192,7 +199,8 @@ pub(super) fn scans(cases: &[Case]) -> Result<Scans, SweepError> {
     let mut scans = BTreeMap::new();
     for case in cases {
         if let (Some(ingest), false) = (&case.recipe.ingest, scans.contains_key(&case.specimen)) {
-            let found = find_scans(&ingest.scans).map_err(|e| of_stage(case, Stage::Ingest, e))?;
+            let found =
+                find_scans(&ingest.scans).map_err(|e| of_stage(case, stages::ingest::STAGE, e))?;
             scans.insert(case.specimen.clone(), found);
         }
     }
@@ -220,7 +228,8 @@ fn materials(cases: &[Case]) -> Result<(Vec<RubberData>, Vec<usize>), SweepError
         let number = match numbers.get(&key) {
             Some(number) => *number,
             None => {
-                materials.push(bem::rubber(section).map_err(|e| of_stage(case, Stage::Bem, e))?);
+                materials
+                    .push(bem::rubber(section).map_err(|e| of_stage(case, stages::bem::STAGE, e))?);
                 numbers.insert(key, materials.len() - 1);
                 materials.len() - 1
             }

@@ -1,13 +1,14 @@
 //! What a shard computes: the tasks of the stages that solve.
 
 use crate::artifact::{Digest, SolveStore};
-use crate::recipe::{Chain, Recipe, Work};
+use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages::bem::{self, Bem};
 use crate::stages::fem::{self, Fem};
 use crate::stages::micro::{self, Micro};
 use crate::stages::multilevel::Multilevel;
+use crate::stages::{Chain, Job};
 use crate::stages::{StageError, Watch};
 use serde::{Deserialize, Serialize};
 
@@ -44,14 +45,14 @@ impl Solvers {
     /// # Errors
     /// [`InvalidRecipe`] for the study of one sine.
     pub fn of(case: &Recipe) -> Result<Self, InvalidRecipe> {
-        match case.work()? {
-            Work::Chain(Chain { bem, micro, fem, multilevel, .. }) => Ok(Self {
+        match case.job()? {
+            Job::Chain(Chain { bem, micro, fem, multilevel, .. }) => Ok(Self {
                 bem: bem.clone(),
                 micro: micro.cloned().unwrap_or_default(),
                 fem: fem.cloned().unwrap_or_default(),
                 multilevel: multilevel.copied().unwrap_or_default(),
             }),
-            Work::Sinusoid(_) => Err(InvalidRecipe::SweepOfSinusoid),
+            Job::Sinusoid(_) => Err(InvalidRecipe::SweepOfSinusoid),
         }
     }
 }

@@ -4,7 +4,7 @@
 use super::{Campaign, recipe, try_run};
 use asperity::artifact::{Manifest, Row, RunView};
 use asperity::pipeline::Selection;
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::characterise::{
     AVERAGE, DEPTH_FILE, DepthRow, HURST_FILE, HurstRow, ISOTROPIC_FILE, IsotropicRow,
     PARAMETERS_FILE, PROFILE_FILE, ParametersRow, ProfileRow, SELF_AFFINE_FILE, SelfAffineRow,
@@ -12,7 +12,7 @@ use asperity::stages::characterise::{
 
 /// Ingest and characterise; returns the warnings of the latter.
 fn characterise(campaign: &Campaign) -> Vec<String> {
-    for stage in [Stage::Ingest, Stage::Characterise] {
+    for stage in [stages::ingest::STAGE, stages::characterise::STAGE] {
         let only = Selection { only: Some(stage), ..Selection::default() };
         try_run(&recipe(campaign), &campaign.path("out"), only).unwrap();
     }
@@ -157,7 +157,7 @@ fn flat_scans_alone_are_characterised_and_the_fit_of_waves_says_why_it_cannot_be
     let warnings = characterise(&campaign);
     assert_told(&warnings, &["3 of 3 windows have no roughness parameters"]);
     assert_eq!(table::<ParametersRow>(&campaign, PARAMETERS_FILE), []);
-    let only = Selection { only: Some(Stage::Approximate), ..Selection::default() };
+    let only = Selection { only: Some(stages::approximate::STAGE), ..Selection::default() };
     let error = try_run(&recipe(&campaign), &campaign.path("out"), only).unwrap_err();
     assert!(error.to_string().contains("correlation"), "{error}");
 }

@@ -9,6 +9,7 @@ use asperity::pipeline::Selection;
 use asperity::recipe::Recipe;
 use asperity::rubber::{Rheology, read_rubber};
 use asperity::schemas::documents;
+use asperity::stages;
 use asperity::stages::Stage;
 use asperity::stages::bem::{CURVES_FILE, CurveRow};
 use asperity::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};
@@ -244,9 +245,9 @@ fn only_the_correction_is_made_anew_when_its_rule_changes() {
     let changed = recipe(&campaign);
     let out = campaign.path("out");
     let stale = stale(&changed, &out);
-    assert_eq!(stale[0].0, Stage::Hybrid, "{stale:?}");
+    assert_eq!(stale[0].0, stages::hybrid::STAGE, "{stale:?}");
     assert!(stale[0].1.contains("mean"), "{stale:?}");
-    assert_eq!(run(&changed, &out), [Stage::Hybrid, Stage::Tables]);
+    assert_eq!(run(&changed, &out), [stages::hybrid::STAGE, stages::tables::STAGE]);
     // Solves of the microscale are kept one by one.
     std::fs::remove_dir_all(out.join("micro")).unwrap();
     run(&changed, &out);
@@ -262,13 +263,13 @@ fn stages_are_stale_behind_those_they_read_alone() {
     let (changed, out) = (recipe(&campaign), campaign.path("out"));
     let found = stale(&changed, &out);
     let stages: Vec<Stage> = found.iter().map(|(stage, _)| *stage).collect();
-    assert_eq!(stages, [Stage::Micro, Stage::Hybrid, Stage::Tables]);
+    assert_eq!(stages, [stages::micro::STAGE, stages::hybrid::STAGE, stages::tables::STAGE]);
     assert_eq!(found[0].1, "micro.tolerance: 0.005 -> 0.004");
     let only = |stage| Selection { only: Some(stage), ..Selection::default() };
-    assert_eq!(try_run(&changed, &out, only(Stage::Fem)).unwrap(), []);
-    let refused = try_run(&changed, &out, only(Stage::Tables)).unwrap_err().to_string();
+    assert_eq!(try_run(&changed, &out, only(stages::fem::STAGE)).unwrap(), []);
+    let refused = try_run(&changed, &out, only(stages::tables::STAGE)).unwrap_err().to_string();
     assert!(refused.starts_with("tables needs the results of micro"), "{refused}");
-    let from = Selection { from: Some(Stage::Fem), ..Selection::default() };
+    let from = Selection { from: Some(stages::fem::STAGE), ..Selection::default() };
     let refused = try_run(&changed, &out, from).unwrap_err().to_string();
     assert!(refused.starts_with("tables needs the results of micro"), "{refused}");
 }

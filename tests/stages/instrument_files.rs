@@ -4,10 +4,11 @@ use super::{Campaign, recipe, try_run};
 use asperity::artifact::{Manifest, RunView};
 use asperity::pipeline::Selection;
 use asperity::scans::file::{Grid, ScanFile, write_x3p};
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::ingest::read_windows;
 
-const ONLY_INGEST: Selection = Selection { only: Some(Stage::Ingest), from: None, force: None };
+const ONLY_INGEST: Selection =
+    Selection { only: Some(stages::ingest::STAGE), from: None, force: None };
 
 /// The heights of the text scans of the campaign: 320 points, 25 um apart.
 fn write(campaign: &Campaign, name: &str, rows: usize) {

@@ -6,6 +6,7 @@ mod common;
 #[path = "../common/digests.rs"]
 mod digests;
 
+mod added;
 mod bem;
 mod changes;
 mod characterise;
@@ -27,6 +28,7 @@ mod waves;
 use asperity::numerics::Interrupt;
 use asperity::pipeline::{self, PipelineError, Selection, State};
 use asperity::recipe::Recipe;
+use asperity::stages;
 use asperity::stages::Stage;
 use common::Campaign;
 use digests::digests;
@@ -34,12 +36,12 @@ use std::path::Path;
 
 /// The stages of the small campaign, which is solved on the half-space alone.
 const STAGES: [Stage; 6] = [
-    Stage::Ingest,
-    Stage::Characterise,
-    Stage::Approximate,
-    Stage::Realise,
-    Stage::Bem,
-    Stage::Tables,
+    stages::ingest::STAGE,
+    stages::characterise::STAGE,
+    stages::approximate::STAGE,
+    stages::realise::STAGE,
+    stages::bem::STAGE,
+    stages::tables::STAGE,
 ];
 
 fn recipe(campaign: &Campaign) -> Recipe {

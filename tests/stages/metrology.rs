@@ -7,6 +7,7 @@
 use super::{Campaign, recipe, try_run};
 use asperity::artifact::{Manifest, RunView};
 use asperity::pipeline::Selection;
+use asperity::stages;
 use asperity::stages::Stage;
 use asperity::stages::characterise::{
     DEPTH_FILE, DepthRow, PARAMETERS_FILE, PROFILE_FILE, ParametersRow, ProfileRow,
@@ -35,7 +36,7 @@ fn warnings(campaign: &Campaign) -> Vec<String> {
         let text = campaign.read(&format!("out/{}/manifest.json", stage.name()));
         serde_json::from_str::<Manifest>(&text).unwrap().warnings
     };
-    [Stage::Ingest, Stage::Characterise].into_iter().flat_map(of_stage).collect()
+    [stages::ingest::STAGE, stages::characterise::STAGE].into_iter().flat_map(of_stage).collect()
 }
 
 fn table<R: asperity::artifact::Row>(campaign: &Campaign, stage: &str, file: &str) -> Vec<R> {
@@ -181,7 +182,7 @@ fn channels_of_an_erd_file_are_chosen_and_coarse_profiles_have_no_depth() {
     approx::assert_relative_eq!(rms(&right) / left, 9.0 / 5.0, max_relative = 1e-6);
     for channel in ["1", "4"] {
         let road = with(channel);
-        let only = Selection { only: Some(Stage::Ingest), ..Selection::default() };
+        let only = Selection { only: Some(stages::ingest::STAGE), ..Selection::default() };
         let error = try_run(&recipe(&road), &road.path("out"), only).unwrap_err().to_string();
         let parts = ["road.erd", "channel", "2 LElev., 3 RElev."];
         assert!(parts.iter().all(|part| error.contains(part)), "{error}");
@@ -192,7 +193,7 @@ fn channels_of_an_erd_file_are_chosen_and_coarse_profiles_have_no_depth() {
 fn a_channel_for_files_that_have_none_is_told() {
     let campaign = Campaign::new();
     campaign.edit("recipe.toml", r#"["scans"]"#, "[\"scans\"]\nerd_channel = 2");
-    let only = Selection { only: Some(Stage::Ingest), ..Selection::default() };
+    let only = Selection { only: Some(stages::ingest::STAGE), ..Selection::default() };
     try_run(&recipe(&campaign), &campaign.path("out"), only).unwrap();
     let told = campaign.read("out/ingest/manifest.json");
     assert!(told.contains("ingest.erd_channel does nothing"), "{told}");

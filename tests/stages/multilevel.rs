@@ -8,7 +8,7 @@ use asperity::numerics::Interrupt;
 use asperity::numerics::statistics::MeanEstimate;
 use asperity::pipeline::{self, Event, Selection};
 use asperity::recipe::Recipe;
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::bem::{CURVES_FILE, CurveRow};
 use asperity::stages::fem::{FEM_FILE, FemCurveRow};
 use asperity::stages::multilevel::{
@@ -190,7 +190,7 @@ fn a_stopped_run_goes_on_to_the_same_averages() {
     let (interrupt, out) = (Interrupt::default(), campaign.path("out"));
     let stopped = AtomicBool::new(false);
     let observer = |event: Event| {
-        if matches!(event, Event::Progress(Stage::Multilevel, 1.., _)) {
+        if matches!(event, Event::Progress(stage, 1.., _) if stage == stages::multilevel::STAGE) {
             stopped.store(true, Ordering::Relaxed);
             interrupt.set();
         }

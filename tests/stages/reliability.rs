@@ -2,7 +2,7 @@
 
 use super::{Campaign, recipe, run};
 use asperity::artifact::RunView;
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::approximate::{FITS_FILE, FitRow};
 use asperity::stages::characterise::{
     AGREEMENT_FILE, AVERAGE, AgreementRow, CORRELATION_FILE, CorrelationRow, HURST_FILE, HurstRow,
@@ -49,7 +49,8 @@ fn conventions_and_the_cosine_check_stand_in_the_artifacts() {
     let largest: f64 = metadata[LARGEST_DIFFERENCE_KEY].parse().unwrap();
     let found = rows.iter().map(|row| row.relative_difference.abs()).fold(0.0, f64::max);
     assert_eq!(found, largest);
-    let warnings = view.stage_manifest(Stage::Characterise.name()).unwrap().unwrap().warnings;
+    let warnings =
+        view.stage_manifest(stages::characterise::STAGE.name()).unwrap().unwrap().warnings;
     let warned = warnings.iter().any(|warning| warning.contains("correlation differ"));
     assert_eq!(warned, largest > 0.1);
     let (rows, _) = view.read_table::<HurstRow>("characterise", HURST_FILE).unwrap();

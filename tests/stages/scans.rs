@@ -3,7 +3,7 @@
 use super::{Campaign, recipe, run, try_run};
 use asperity::artifact::RunView;
 use asperity::pipeline::Selection;
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::characterise::{
     AVERAGE, CORRELATION_FILE, CorrelationRow, PARAMETERS_FILE, PROFILE_FILE, ParametersRow,
     ProfileRow, SPECTRUM_FILE, SpectrumRow, TEXTURE_FILE, TextureRow,
@@ -49,7 +49,7 @@ fn campaign(gaps: &[usize]) -> Campaign {
     let limit = "[characterise]\nself_affine_longest_lag_mm = 0.3";
     campaign.edit("recipe.toml", "[characterise]", limit);
     // No further: the correlation of a pure sine vanishes at its wavelength and has no logarithm.
-    for stage in [Stage::Ingest, Stage::Characterise] {
+    for stage in [stages::ingest::STAGE, stages::characterise::STAGE] {
         let only = Selection { only: Some(stage), ..Selection::default() };
         try_run(&recipe(&campaign), &campaign.path("out"), only).unwrap();
     }

@@ -8,7 +8,7 @@ use asperity::fem::steady::{BlockOptions, SteadyContact};
 use asperity::pipeline::Selection;
 use asperity::recipe::Recipe;
 use asperity::rubber::{Rheology, Rubber, read_rubber};
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::sinusoid::{
     AGREEMENT_FILE, ASYMPTOTES_FILE, AgreementRow, AsymptoteRow, FIELDS_FILE, FieldRow,
     POINTS_FILE, PRESSURES_FILE, PointRow,
@@ -63,7 +63,7 @@ fn direct(rubber: &Rubber, row: &PointRow, columns: usize) -> Option<f64> {
 fn every_point_is_a_solution_or_says_that_there_is_none() {
     let (campaign, recipe) = study();
     let out = campaign.path("out");
-    assert_eq!(run(&recipe, &out), [Stage::Sinusoid]);
+    assert_eq!(run(&recipe, &out), [stages::sinusoid::STAGE]);
     let view = RunView::of(&out);
     let (points, _) = view.read_table::<PointRow>("sinusoid", POINTS_FILE).unwrap();
     assert_eq!(points.len(), 3 * 3);
@@ -137,17 +137,17 @@ fn a_study_is_up_to_date_or_continues_from_its_solves() {
     assert_eq!(run(&wanted, &out), []);
     campaign.edit("recipe.toml", "speeds_mm_s = [0.001, 10.0, 1e3]", "speeds_mm_s = [0.001, 10.0]");
     let fewer = recipe(&campaign);
-    assert_eq!(stale(&fewer, &out)[0].0, Stage::Sinusoid);
-    assert_eq!(run(&fewer, &out), [Stage::Sinusoid]);
+    assert_eq!(stale(&fewer, &out)[0].0, stages::sinusoid::STAGE);
+    assert_eq!(run(&fewer, &out), [stages::sinusoid::STAGE]);
     assert_ne!(digests(&out), first);
     // From the store and from scratch.
-    assert_eq!(run(&wanted, &out), [Stage::Sinusoid]);
+    assert_eq!(run(&wanted, &out), [stages::sinusoid::STAGE]);
     assert_eq!(digests(&out), first);
-    let force = Selection { force: Some(Stage::Sinusoid), ..Selection::default() };
-    assert_eq!(try_run(&wanted, &out, force).unwrap(), [Stage::Sinusoid]);
+    let force = Selection { force: Some(stages::sinusoid::STAGE), ..Selection::default() };
+    assert_eq!(try_run(&wanted, &out, force).unwrap(), [stages::sinusoid::STAGE]);
     assert_eq!(digests(&out), first);
 
-    let only = Selection { only: Some(Stage::Bem), ..Selection::default() };
+    let only = Selection { only: Some(stages::bem::STAGE), ..Selection::default() };
     let refused = try_run(&wanted, &out, only).unwrap_err().to_string();
     assert_eq!(refused, "the recipe has no stage bem: it has sinusoid");
 }

@@ -4,7 +4,7 @@ use super::{Campaign, recipe, run, stale};
 use asperity::artifact::RunView;
 use asperity::recipe::Recipe;
 use asperity::rubber::read_rubber;
-use asperity::stages::Stage;
+use asperity::stages;
 use asperity::stages::bem::{CURVES_FILE, CurveRow};
 use asperity::stages::realise::read_surfaces;
 use asperity::stages::tables::{
@@ -30,9 +30,9 @@ fn theories_stand_beside_the_half_space_where_they_are_asked_for() {
     campaign.write("recipe.toml", &with_tables(&campaign, THEORIES));
     let recipe = recipe(&campaign);
     let stale = stale(&recipe, &out);
-    assert_eq!((stale.len(), stale[0].0), (1, Stage::Tables), "{stale:?}");
+    assert_eq!((stale.len(), stale[0].0), (1, stages::tables::STAGE), "{stale:?}");
     assert!(stale[0].1.contains("tables.theories: not set"), "{stale:?}");
-    assert_eq!(run(&recipe, &out), [Stage::Tables]);
+    assert_eq!(run(&recipe, &out), [stages::tables::STAGE]);
     let warnings = view.stage_manifest("tables").unwrap().unwrap().warnings;
     assert!(warnings.len() == 1 && warnings[0].contains("layer_ratio"), "{warnings:?}");
 

@@ -89,7 +89,7 @@ pub(super) fn warnings(
     for case in cases {
         let folder = layout.case(case);
         let view = RunView::of(&folder);
-        for stage in Stage::CHAIN {
+        for stage in Stage::ALL {
             // Links of several cases lead to one result.
             let real = std::fs::canonicalize(folder.join(stage.name()));
             let Some(manifest) = view.stage_manifest(stage.name())? else { continue };

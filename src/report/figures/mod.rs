@@ -16,6 +16,7 @@ pub(super) use waves::microscale_slope;
 use super::ReportError;
 use crate::artifact::RunView;
 use crate::plot::Figure;
+use crate::stages;
 use crate::stages::Stage;
 
 /// A kind of figure.
@@ -38,91 +39,97 @@ pub static ALL: [Kind; 13] = [
         name: "scans",
         shows: "heights of some windows over their length",
         wants: "scans, section [ingest]",
-        stages: &[Stage::Ingest],
+        stages: &[stages::ingest::STAGE],
         make: scans::scans,
     },
     Kind {
         name: "heights",
         shows: "distribution of the heights of all windows",
         wants: "scans, section [ingest]",
-        stages: &[Stage::Ingest],
+        stages: &[stages::ingest::STAGE],
         make: scans::heights,
     },
     Kind {
         name: "correlation",
         shows: "height-difference correlation of the scans and of the superposed sines",
         wants: "scans, section [ingest]",
-        stages: &[Stage::Characterise, Stage::Approximate],
+        stages: &[stages::characterise::STAGE, stages::approximate::STAGE],
         make: roughness::correlation,
     },
     Kind {
         name: "spectrum",
         shows: "power spectral density with its standard error",
         wants: "scans, section [ingest]",
-        stages: &[Stage::Characterise],
+        stages: &[stages::characterise::STAGE],
         make: roughness::spectrum,
     },
     Kind {
         name: "waves",
         shows: "amplitudes and root mean square slopes of the superposed sines",
         wants: "the stage approximate",
-        stages: &[Stage::Approximate, Stage::Micro],
+        stages: &[stages::approximate::STAGE, stages::micro::STAGE],
         make: waves::waves,
     },
     Kind {
         name: "friction",
         shows: "friction over contact area, all models, with the band over realisations",
         wants: "the stage tables",
-        stages: &[Stage::Tables],
+        stages: &[stages::tables::STAGE],
         make: friction::friction,
     },
     Kind {
         name: "comparison",
         shows: "computed beside published friction",
         wants: "published tables, key tables.published",
-        stages: &[Stage::Tables],
+        stages: &[stages::tables::STAGE],
         make: friction::comparison,
     },
     Kind {
         name: "area",
         shows: "contact area over pressure of every solved contact",
         wants: "the stage bem",
-        stages: &[Stage::Bem],
+        stages: &[stages::bem::STAGE],
         make: contact::area,
     },
     Kind {
         name: "correction",
         shows: "friction of the microscale under both models and the correction, over pressure",
         wants: "a microscale: section [micro], and waves that are steep enough",
-        stages: &[Stage::Micro, Stage::Hybrid],
+        stages: &[stages::micro::STAGE, stages::hybrid::STAGE],
         make: correction::correction,
     },
     Kind {
         name: "pressure",
         shows: "contact pressure along the surface",
         wants: "fields, key bem.field_area_fractions",
-        stages: &[Stage::Bem],
+        stages: &[stages::bem::STAGE],
         make: fields::pressure,
     },
     Kind {
         name: "deformation",
         shows: "profile and deformed rubber along the surface",
         wants: "fields, key bem.field_area_fractions",
-        stages: &[Stage::Realise, Stage::Bem],
+        stages: &[stages::realise::STAGE, stages::bem::STAGE],
         make: fields::deformation,
     },
     Kind {
         name: "rubber",
         shows: "moduli and loss factor over frequency with the frequencies that the surface excites",
         wants: "the stage bem",
-        stages: &[Stage::Realise, Stage::Bem],
+        stages: &[stages::realise::STAGE, stages::bem::STAGE],
         make: rubber::rubber,
     },
     Kind {
         name: "accuracy",
         shows: "seconds against estimated error of every contact, and the parts of the error",
         wants: "the stage bem",
-        stages: &[Stage::Bem, Stage::Micro, Stage::Fem, Stage::Multilevel, Stage::Tables],
+        stages: &[
+            stages::bem::STAGE,
+            stages::micro::STAGE,
+            stages::fem::STAGE,
+            stages::multilevel::STAGE,
+            stages::tables::STAGE,
+        ],
         make: accuracy::accuracy,
     },
 ];

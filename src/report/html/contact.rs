@@ -5,7 +5,7 @@ use super::page::{absent, number, percent, table};
 use crate::report::ReportError;
 use crate::report::figures::{Material, material};
 use crate::report::read::rows;
-use crate::stages::Stage;
+use crate::stages;
 use crate::stages::micro::{SAMPLES_FILE, SampleRow};
 use maud::{Markup, html};
 
@@ -15,25 +15,25 @@ impl Report<'_> {
     }
 
     pub(super) fn correction(&self) -> Result<Markup, ReportError> {
-        if !self.has(Stage::Micro)? {
+        if !self.has(stages::micro::STAGE)? {
             return Ok(absent(
                 "Friction of the half-space is not corrected in this run: its recipe has no section [micro].",
             ));
         }
         let samples = rows::<SampleRow>(self.run, "micro", SAMPLES_FILE)?.unwrap_or_default();
         Ok(html! {
-            (self.warnings(&[Stage::Micro, Stage::Hybrid])?)
+            (self.warnings(&[stages::micro::STAGE, stages::hybrid::STAGE])?)
             (self.figure("correction")?)
             @if !samples.is_empty() { (sample_table(&samples)) }
         })
     }
 
     pub(super) fn fields(&self) -> Result<Markup, ReportError> {
-        if !self.has(Stage::Bem)? {
+        if !self.has(stages::bem::STAGE)? {
             return Ok(absent("No contacts were solved in this run."));
         }
         Ok(html! {
-            (self.doubt(&[Stage::Realise, Stage::Bem]))
+            (self.doubt(&[stages::realise::STAGE, stages::bem::STAGE]))
             (self.figure("pressure")?)
             (self.figure("deformation")?)
         })
@@ -55,7 +55,7 @@ impl Report<'_> {
             vec![speed.to_string(), number(range.lowest_hz, 4), number(range.highest_hz, 4)]
         });
         Ok(html! {
-            (self.doubt(&[Stage::Bem]))
+            (self.doubt(&[stages::bem::STAGE]))
             p { "Rubber " (rubber.name)
                 @match material.temperature_c { Some(celsius) => { " at " (celsius) " °C" } None => {} }
                 ": relaxed modulus " (number(1e-6 * rubber.equilibrium_modulus, 4)) " MPa, glassy modulus "

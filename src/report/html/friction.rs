@@ -5,6 +5,7 @@ use super::page::{absent, number, optional, percent, table};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::report::tables::{About, FrictionTable, friction_tables};
+use crate::stages;
 use crate::stages::Stage;
 use crate::stages::bem::{REALISATIONS_FILE, RealisationsRow, SOLVES_FILE, SolveRow};
 use crate::stages::tables::{
@@ -26,7 +27,7 @@ impl Report<'_> {
         }
         let models = rows::<ModelRow>(self.run, "tables", MODELS_FILE)?.unwrap_or_default();
         Ok(html! {
-            (self.warnings(&[Stage::Tables])?)
+            (self.warnings(&[stages::tables::STAGE])?)
             p { "Models: " (models_in_words(&all)) "." }
             (self.figure("friction")?)
             (self.figure("area")?)
@@ -44,7 +45,7 @@ impl Report<'_> {
             rows::<ComparisonRow>(self.run, "tables", COMPARISON_FILE)?.unwrap_or_default();
         let about = About::of(self.run)?;
         Ok(html! {
-            (self.doubt(&[Stage::Tables]))
+            (self.doubt(&[stages::tables::STAGE]))
             @for one in friction_tables(&all) { (friction_table(&one, &about)) }
             @for rows in compared.chunk_by(|a, b| a.published_table == b.published_table) {
                 (comparison_table(rows))
@@ -59,7 +60,7 @@ impl Report<'_> {
         let friction = self.friction_rows()?;
         let tolerance = self.tolerance()?;
         Ok(html! {
-            (self.warnings(&[Stage::Bem, Stage::Multilevel])?)
+            (self.warnings(&[stages::bem::STAGE, stages::multilevel::STAGE])?)
             p { @match tolerance {
                 Some(tolerance) => { "The recipe asks for a relative accuracy of the averages of " (percent(tolerance)) "." }
                 None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated all the same." }
@@ -90,7 +91,7 @@ impl Report<'_> {
 
     fn seconds(&self) -> Result<Markup, ReportError> {
         let mut lines = vec![];
-        for stage in Stage::CHAIN {
+        for stage in Stage::ALL {
             if let Some(manifest) = self.run.stage_manifest(stage.name())? {
                 lines.push(vec![stage.name().to_owned(), format!("{:.2}", manifest.seconds)]);
             }

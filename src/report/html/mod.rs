@@ -11,6 +11,7 @@ mod study;
 use super::ReportError;
 use super::figures::Kind;
 use crate::artifact::{RunView, TOOL_VERSION};
+use crate::stages;
 use crate::stages::Stage;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeMap;
@@ -48,7 +49,7 @@ struct Section {
 /// the folder has no results.
 pub fn document(run: &RunView, origin: &Origin) -> Result<String, ReportError> {
     let mut any = false;
-    for stage in Stage::CHAIN.into_iter().chain([Stage::Sinusoid]) {
+    for stage in Stage::ALL.into_iter() {
         any |= run.stage_manifest(stage.name())?.is_some();
     }
     if !any {
@@ -101,7 +102,7 @@ impl Report<'_> {
     fn sections(&self) -> Result<Vec<Section>, ReportError> {
         let mut sections = vec![];
         let mut add = |id, title, body| sections.push(Section { id, title, body });
-        if self.has(Stage::Sinusoid)? {
+        if self.has(stages::sinusoid::STAGE)? {
             add("study", "One sine under three models", self.study()?);
         } else {
             add("input", "Scans: what came in and what was cleaned", self.input()?);

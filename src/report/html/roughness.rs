@@ -5,14 +5,14 @@ use super::page::{absent, number, optional, table};
 use crate::report::ReportError;
 use crate::report::figures::microscale_slope;
 use crate::report::read::rows;
-use crate::stages::Stage;
+use crate::stages;
 use crate::stages::approximate::{FITS_FILE, FitRow, ScaleRow, WAVES_FILE};
 use crate::stages::characterise::{AVERAGE, HURST_FILE, HurstRow, SELF_AFFINE_FILE, SelfAffineRow};
 use maud::{Markup, html};
 
 impl Report<'_> {
     pub(super) fn correlation(&self) -> Result<Markup, ReportError> {
-        if !self.has(Stage::Characterise)? {
+        if !self.has(stages::characterise::STAGE)? {
             return Ok(absent("No scans were characterised in this run: the waves are given."));
         }
         let fits = rows::<FitRow>(self.run, "approximate", FITS_FILE)?.unwrap_or_default();
@@ -20,7 +20,7 @@ impl Report<'_> {
             rows::<SelfAffineRow>(self.run, "characterise", SELF_AFFINE_FILE)?.unwrap_or_default();
         let average: Vec<_> = affine.iter().filter(|row| row.scan == AVERAGE).collect();
         Ok(html! {
-            (self.warnings(&[Stage::Characterise, Stage::Approximate, Stage::Realise])?)
+            (self.warnings(&[stages::characterise::STAGE, stages::approximate::STAGE, stages::realise::STAGE])?)
             (self.figure("correlation")?)
             @if !fits.is_empty() { (fit_table(&fits)) }
             @if !average.is_empty() { (affine_table(&average)) }
@@ -28,7 +28,7 @@ impl Report<'_> {
     }
 
     pub(super) fn spectrum(&self) -> Result<Markup, ReportError> {
-        if !self.has(Stage::Characterise)? {
+        if !self.has(stages::characterise::STAGE)? {
             return Ok(absent("No scans were characterised in this run: the waves are given."));
         }
         let hurst = rows::<HurstRow>(self.run, "characterise", HURST_FILE)?.unwrap_or_default();
@@ -53,9 +53,9 @@ impl Report<'_> {
             return Ok(absent("No waves were fitted or given in this run."));
         };
         let limit = microscale_slope(self.run)?;
-        let finite = self.has(Stage::Fem)? || self.has(Stage::Multilevel)?;
+        let finite = self.has(stages::fem::STAGE)? || self.has(stages::multilevel::STAGE)?;
         Ok(html! {
-            (self.doubt(&[Stage::Approximate, Stage::Micro]))
+            (self.doubt(&[stages::approximate::STAGE, stages::micro::STAGE]))
             p { (sentence(limit, finite)) }
             (self.figure("waves")?)
             @for rows in scales.chunk_by(|a, b| a.waves == b.waves) {

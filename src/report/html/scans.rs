@@ -4,7 +4,7 @@ use super::Report;
 use super::page::{absent, number, optional, percent, table};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::Stage;
+use crate::stages;
 use crate::stages::characterise::{AVERAGES_FILE, AverageRow, PARAMETERS_FILE, ParametersRow};
 use crate::stages::ingest::{
     FAULTS_FILE, FaultRow, REPORT_FILE, ScanReportRow, WINDOWS_FILE, WindowRow,
@@ -24,7 +24,7 @@ impl Report<'_> {
         let rejected: Vec<&WindowRow> = windows.iter().filter(|w| w.rejected.is_some()).collect();
         let points: u64 = scans.iter().map(|scan| scan.points_read).sum();
         Ok(html! {
-            (self.warnings(&[Stage::Ingest])?)
+            (self.warnings(&[stages::ingest::STAGE])?)
             p { (scans.len()) " scans with " (points) " points came in; " (windows.len() - rejected.len())
                 " of " (windows.len()) " windows were kept." }
             (scan_table(&scans))
@@ -43,7 +43,7 @@ impl Report<'_> {
     }
 
     pub(super) fn heights(&self) -> Result<Markup, ReportError> {
-        if !self.has(Stage::Ingest)? {
+        if !self.has(stages::ingest::STAGE)? {
             return Ok(absent(NO_SCANS));
         }
         let averages =
@@ -53,7 +53,7 @@ impl Report<'_> {
         Ok(html! {
             (self.figure("scans")?)
             (self.figure("heights")?)
-            (self.doubt(&[Stage::Characterise]))
+            (self.doubt(&[stages::characterise::STAGE]))
             @if !averages.is_empty() {
                 (table("Roughness parameters, averages over the windows",
                     &["parameter", "mean", "± 95 %", "standard deviation", "windows"], 1,

@@ -4,7 +4,7 @@ use super::Report;
 use super::page::{number, optional, table};
 use crate::plot::described;
 use crate::report::{ReportError, Study, study_figure};
-use crate::stages::Stage;
+use crate::stages;
 use crate::stages::sinusoid::PointRow;
 use maud::{Markup, PreEscaped, html};
 
@@ -17,7 +17,7 @@ impl Report<'_> {
         let svg =
             study_figure(&study).map_err(|source| ReportError::Figure { name: "study", source })?;
         Ok(html! {
-            (self.warnings(&[Stage::Sinusoid])?)
+            (self.warnings(&[stages::sinusoid::STAGE])?)
             figure { div.panels { div.panel tabindex="0" role="group" aria-label=(SHOWS) {
                 (PreEscaped(described(&svg, "study", SHOWS, SHOWS)))
             } } figcaption { (SHOWS) "." } }
