@@ -21,7 +21,7 @@ pub enum ArtifactError {
     },
     /// The file cannot be decoded at all.
     #[error(
-        "{} is no readable {format} ({reason}); it is truncated, damaged or of another kind: delete {} and run the stage again",
+        "{} cannot be read as {format} ({reason}); it is truncated, damaged or of another kind: delete {} and run the stage again",
         .path.display(),
         what_to_delete(.path)
     )]
@@ -87,7 +87,7 @@ pub enum ArtifactError {
     },
     /// A value that is no number was about to be written to a table.
     #[error(
-        "column {column} of {schema} is NaN in row {row} (counted from 0): an unconverged or undefined result is no number, leave it empty (Option) or drop the row"
+        "column {column} of {schema} is NaN in row {row} (counted from 0): an unconverged or undefined result is not a number, leave it empty (Option) or drop the row"
     )]
     NotANumber {
         /// Schema name.

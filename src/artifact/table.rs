@@ -167,7 +167,7 @@ impl TableFile {
         let name = take("schema")?;
         let version = take("version")?
             .parse()
-            .map_err(|error| invalid(format!("its schema version is no number: {error}")))?;
+            .map_err(|error| invalid(format!("its schema version is not a number: {error}")))?;
         let tool_version = take("tool_version")?;
         let description = take("description")?;
         let recorded = take("content_digest")?.parse().map_err(invalid)?;

@@ -18,7 +18,7 @@ Examples:
   What two per cent of accuracy would cost:
     asperity plan pipelines/asphalt.toml --tolerance 0.02";
 
-/// Say which model each scale will get, on which grids, and what that costs.
+/// Show which model each wave gets, on which grids, and what that costs.
 ///
 /// Runs the cheap stages and the half-space of one realisation, of eight where an accuracy is asked
 /// for, in a temporary folder; nothing is

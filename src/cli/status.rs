@@ -12,7 +12,7 @@ Examples:
   What a run would compute, and why:
     asperity status pipelines/asphalt.toml";
 
-/// Tell of each stage whether its result is up to date, and why not.
+/// Show which stages are up to date, and why the others are not.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Status {

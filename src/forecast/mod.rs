@@ -200,7 +200,7 @@ fn run_trial(
             continue;
         }
         if stage == stages::bem::STAGE {
-            demand_attainable(recipe, folder, interrupted)?;
+            require_attainable(recipe, folder, interrupted)?;
         }
         let seconds = computed(&trial, folder, stage, interrupted)?;
         if stage == stages::bem::STAGE {
@@ -214,7 +214,7 @@ fn run_trial(
 
 /// Refuses an accuracy that the realisations of the recipe are far from giving: the trial has the first
 /// of them alone, which would be refined to it.
-fn demand_attainable(
+fn require_attainable(
     recipe: &Recipe,
     folder: &Path,
     interrupted: &Interrupt,
@@ -226,7 +226,7 @@ fn demand_attainable(
     let store = SolveStore::open(folder.join("trial"))?;
     let watch = Watch { progress: &|_, _| (), interrupted };
     let most = realise.drawn() as usize;
-    Ok(bem::demand_attainable(parameters, &rubber, &surfaces, most, &store, watch)?)
+    Ok(bem::require_attainable(parameters, &rubber, &surfaces, most, &store, watch)?)
 }
 
 /// The recipe without what is dear.

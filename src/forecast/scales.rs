@@ -67,7 +67,7 @@ pub(super) fn scales(
 
 fn choose(slope: f64, threshold: Option<f64>) -> (ScaleModel, String) {
     match threshold {
-        _ if slope == 0.0 => (ScaleModel::LeftOut, "the correlation has no place for it".into()),
+        _ if slope == 0.0 => (ScaleModel::LeftOut, "zero amplitude in the fit".into()),
         Some(threshold) if slope > threshold => {
             let reason = format!("steeper than {threshold} (micro.rms_slope_threshold)");
             (ScaleModel::FiniteElements, reason)

@@ -265,7 +265,7 @@ pub fn run(
         warnings.extend(fit.sine_scales().iter().filter(|scale| scale.amplitude == 0.0).map(
             |scale| {
                 let wavelength_mm = scale.wavelength * 1e3;
-                format!("{waves} waves: the correlation has no place for {wavelength_mm:.4} mm: its amplitude is 0")
+                format!("{waves} waves: the fit gives the wave of {wavelength_mm:.4} mm zero amplitude: the scans show no roughness of its own there")
             },
         ));
         scales.extend(scale_rows(waves, &fit, &intervals));

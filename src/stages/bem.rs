@@ -2,7 +2,7 @@
 
 mod attainable;
 mod curve;
-mod family;
+mod ensemble;
 mod reduction;
 mod rows;
 mod task;
@@ -15,10 +15,10 @@ use crate::artifact::{ArrayDataset, Metadata, Pending, ResultFile, RunView, Solv
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
-pub(crate) use attainable::demand_attainable;
+pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
-use family::{CurveResult, Family};
-pub(crate) use family::{FIRST_REALISATIONS, realisations_needed};
+use ensemble::{CurveResult, Ensemble};
+pub(crate) use ensemble::{FIRST_REALISATIONS, realisations_needed};
 use rows::FIELDS_DESCRIPTION;
 pub use rows::{
     CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, REALISATIONS_FILE,
@@ -219,10 +219,10 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
-    demand_for_all(parameters, &material.rubber, &surfaces, store, context.watch)?;
-    let mut families = families(parameters, &surfaces);
-    Work::new(parameters, &material.rubber, store, context.watch).solve_all(&mut families)?;
-    write(&mut context.pending, &families)?;
+    require_for_all(parameters, &material.rubber, &surfaces, store, context.watch)?;
+    let mut ensembles = ensembles(parameters, &surfaces);
+    Work::new(parameters, &material.rubber, store, context.watch).solve_all(&mut ensembles)?;
+    write(&mut context.pending, &ensembles)?;
     let mut warnings = material.oddities();
     warnings.extend(material.extrapolations(excited(parameters, &surfaces)));
     Ok(warnings)
@@ -240,13 +240,13 @@ pub fn missing(
     store: &SolveStore,
     watch: Watch,
 ) -> Result<Vec<Task>, StageError> {
-    demand_for_all(parameters, rubber, surfaces, store, watch)?;
-    let mut families = families(parameters, surfaces);
-    Work::new(parameters, rubber, store, watch).missing(&mut families)
+    require_for_all(parameters, rubber, surfaces, store, watch)?;
+    let mut ensembles = ensembles(parameters, surfaces);
+    Work::new(parameters, rubber, store, watch).missing(&mut ensembles)
 }
 
-/// [`demand_attainable`] of the realisations that there are of every approximation.
-fn demand_for_all(
+/// [`require_attainable`] of the realisations that there are of every approximation.
+fn require_for_all(
     parameters: &Bem,
     rubber: &Rubber,
     surfaces: &[Surface],
@@ -255,7 +255,7 @@ fn demand_for_all(
 ) -> Result<(), StageError> {
     let of_each = surfaces.chunk_by(|a, b| a.waves == b.waves);
     for of_one in of_each.filter(|of_one| of_one.len() > FIRST_REALISATIONS) {
-        demand_attainable(parameters, rubber, of_one, of_one.len(), store, watch)?;
+        require_attainable(parameters, rubber, of_one, of_one.len(), store, watch)?;
     }
     Ok(())
 }
@@ -275,13 +275,13 @@ pub(crate) fn curve(
     Ok(Work::new(parameters, rubber, store, watch).one_curve(surface, speed_mm_s)?.values)
 }
 
-fn families<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Family<'a>> {
+fn ensembles<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Ensemble<'a>> {
     let tolerance = parameters.average_tolerance;
     surfaces
         .chunk_by(|a, b| a.waves == b.waves)
         .flat_map(|of_one| {
             let speeds = parameters.speeds_mm_s.iter();
-            speeds.map(move |speed| Family::new(of_one, *speed, tolerance))
+            speeds.map(move |speed| Ensemble::new(of_one, *speed, tolerance))
         })
         .collect()
 }
@@ -295,20 +295,20 @@ fn excited(parameters: &Bem, surfaces: &[Surface]) -> Option<FrequencyRange> {
 }
 
 /// Writes the results by number of waves, realisation and speed.
-fn write(pending: &mut Pending, families: &[Family]) -> Result<(), StageError> {
+fn write(pending: &mut Pending, ensembles: &[Ensemble]) -> Result<(), StageError> {
     let none = Metadata::new();
     let mut results: Vec<&CurveResult> = Vec::new();
-    for of_one in families.chunk_by(|a, b| std::ptr::eq(a.surfaces, b.surfaces)) {
-        let most = of_one.iter().map(|family| family.results.len()).max().unwrap_or(0);
+    for of_one in ensembles.chunk_by(|a, b| std::ptr::eq(a.surfaces, b.surfaces)) {
+        let most = of_one.iter().map(|ensemble| ensemble.results.len()).max().unwrap_or(0);
         for k in 0..most {
-            results.extend(of_one.iter().filter_map(|family| family.results.get(k)));
+            results.extend(of_one.iter().filter_map(|ensemble| ensemble.results.get(k)));
         }
     }
     let solves: Vec<_> = results.iter().flat_map(|r| r.solves.iter().cloned()).collect();
     pending.write_table(SOLVES_FILE, &solves, &none)?;
     let values: Vec<_> = results.iter().flat_map(|r| r.values.iter().cloned()).collect();
     pending.write_table(CURVES_FILE, &values, &none)?;
-    let counts: Vec<_> = families.iter().filter_map(realisations_row).collect();
+    let counts: Vec<_> = ensembles.iter().filter_map(realisations_row).collect();
     pending.write_table(REALISATIONS_FILE, &counts, &none)?;
     let fields: Vec<ArrayDataset> =
         results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
@@ -320,14 +320,14 @@ fn write(pending: &mut Pending, families: &[Family]) -> Result<(), StageError> {
     Ok(())
 }
 
-fn realisations_row(family: &Family) -> Option<RealisationsRow> {
-    let surface = family.surfaces.first()?;
-    let left_out = family.left_out.wavelengths(surface).iter().map(|metre| metre * 1e3).collect();
+fn realisations_row(ensemble: &Ensemble) -> Option<RealisationsRow> {
+    let surface = ensemble.surfaces.first()?;
+    let left_out = ensemble.left_out.wavelengths(surface).iter().map(|metre| metre * 1e3).collect();
     Some(RealisationsRow {
         waves: surface.waves,
-        speed_mm_s: family.speed_mm_s,
-        realisations: family.results.len() as u32,
-        with_all_waves: family.with_all_waves.min(family.results.len()) as u32,
+        speed_mm_s: ensemble.speed_mm_s,
+        realisations: ensemble.results.len() as u32,
+        with_all_waves: ensemble.with_all_waves.min(ensemble.results.len()) as u32,
         left_out_wavelengths_mm: left_out,
     })
 }

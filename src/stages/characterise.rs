@@ -172,7 +172,7 @@ impl Characterise {
                 self.hurst_longest_wavelength_mm,
             ),
         ] {
-            demand_ascending(keys, lower, upper)?;
+            require_ascending(keys, lower, upper)?;
         }
         self.profile_depth.check()
     }
@@ -187,7 +187,7 @@ impl Characterise {
 }
 
 /// Of two lengths that are both given the first is the shorter.
-fn demand_ascending(
+fn require_ascending(
     keys: &'static str,
     lower: Option<f64>,
     upper: Option<f64>,

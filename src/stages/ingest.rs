@@ -17,7 +17,7 @@ use crate::artifact::{
     Input, Metadata, ResultFile, Row, RunView, SchemaVersion, Storage,
 };
 use crate::requirement::{InvalidRecipe, require};
-use crate::scans::file::{CHANNELS, Family, Grid, MapLines, is_instrument, open_channel};
+use crate::scans::file::{CHANNELS, Format, Grid, MapLines, is_instrument, open_channel};
 use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
 use crate::scans::{
@@ -504,7 +504,7 @@ fn read_instrument(
         is_text: false,
         contradictions: Vec::new(),
         channels: None,
-        is_erd: Family::detect(source.start()) == Some(Family::Erd),
+        is_erd: Format::detect(source.start()) == Some(Format::Erd),
         repeated: None,
         stuck: None,
         smooth: None,

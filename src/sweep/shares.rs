@@ -3,9 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Deals tasks of the given costs to `shards` of about equal sums: the dearest first, each to the shard with
-/// the least so far (Graham's LPT rule, whose largest sum is at most 4/3 of the least possible,
-/// doi:10.1137/0117039). Returns the tasks of each shard, dearest first.
+/// Deals tasks of the given costs to `shards` of about equal sums by longest-processing-time scheduling: the costliest
+/// first, each to the shard with the least so far (Graham, whose largest sum is at most 4/3 of the least possible,
+/// doi:10.1137/0117039). Returns the tasks of each shard, the costliest first.
 ///
 /// Equal costs are dealt in their order, so that the same tasks give the same shares everywhere.
 pub fn deal(costs: &[f64], shards: usize) -> Vec<Vec<usize>> {

@@ -164,7 +164,7 @@ fn clumsy_files_are_answered_clearly() {
         (&x3p[..x3p.len() / 2], &["no zip archive", "copy the file again"]),
         (
             &changed("NumPoints = 400", "NumPoints = 4000000000"),
-            &["the heights needs 7999999999 bytes"],
+            &["the heights must have 7999999999 bytes"],
         ),
         (&changed("Xscale = 1e-5", "Xscale = 1e5"), &["line 7", "spacing", "check"]),
         (&changed("Zscale = 1", "Zscale = 0"), &["line 9", "Zscale is `0`", "positive"]),

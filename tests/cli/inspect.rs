@@ -197,7 +197,7 @@ fn truncated_and_foreign_files_are_named() {
             b"{\"schema\": \"asperity.recipe\", \"version\": 1}",
             "holds asperity.recipe, expected asperity.manifest",
         ),
-        (b"{\"schema\": \"asperity.solve\", \"version\": 1}", "no readable stored solve"),
+        (b"{\"schema\": \"asperity.solve\", \"version\": 1}", "cannot be read as stored solve"),
         (b"{\"a\": 1}", "no readable manifest"),
     ];
     for (bytes, part) in cases {

@@ -196,7 +196,7 @@ fn texts() {
         &["4000001 or more"],
     );
     let many = header.replace("4000000", "268435456");
-    refused("points of SDF", many.as_bytes(), &["heights needs 536870911 bytes"]);
+    refused("points of SDF", many.as_bytes(), &["heights must have 536870911 bytes"]);
     let gwyddion = "# a: b\n# c: 1 m\n# d: 1 m\n# e: m\n";
     for body in ["1 ", "1\n", "\n"] {
         read_within_promise("Gwyddion", &[gwyddion.as_bytes().to_vec(), bytes(body)].concat());

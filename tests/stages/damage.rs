@@ -113,9 +113,9 @@ fn status_survives_several_unreadable_manifests() {
     fs::write(out.join("bem/manifest.json"), "{").unwrap();
     let found = stale(&recipe, &out);
     let reasons: Vec<&str> = found.iter().map(|(_, reason)| reason.as_str()).collect();
-    assert!(reasons[0].contains("approximate/manifest.json is no readable manifest"));
+    assert!(reasons[0].contains("approximate/manifest.json cannot be read as manifest"));
     assert_eq!(reasons[1], "not computed yet");
-    assert!(reasons[2].contains("bem/manifest.json is no readable manifest"));
+    assert!(reasons[2].contains("bem/manifest.json cannot be read as manifest"));
     assert_eq!(reasons[3], "approximate is stale");
     for stage in ["approximate", "bem"] {
         let refused = try_run(&recipe, &out, Selection::default()).unwrap_err().to_string();

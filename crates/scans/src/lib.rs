@@ -93,8 +93,8 @@ pub fn admit_source(source: Source<'_>) -> io::Result<()> {
         return Ok(());
     }
     let invalid = |problem: String| io::Error::new(io::ErrorKind::InvalidData, problem);
-    match file::Family::detect(source.start()) {
-        Some(file::Family::X3p | file::Family::Gwyddion) => admit_size(length),
+    match file::Format::detect(source.start()) {
+        Some(file::Format::X3p | file::Format::Gwyddion) => admit_size(length),
         Some(_) => file::open(source).map(|_| ()).map_err(|problem| invalid(problem.to_string())),
         None if is_binary(source.start()) => {
             Err(invalid(format!("{} (of {length} bytes)", ScanProblem::Binary)))

@@ -234,7 +234,7 @@ fn a_file_cut_anywhere_is_refused() {
     }
     std::fs::write(&path, b"pressure,friction\n0.1,0.5\n").unwrap();
     let foreign = read_table::<Small>(&path).unwrap_err().to_string();
-    assert!(foreign.contains("samples.arrow is no readable Arrow IPC file"), "{foreign}");
+    assert!(foreign.contains("samples.arrow cannot be read as Arrow IPC file"), "{foreign}");
 }
 
 /// The digest in the file finds a flipped bit in the values that Arrow itself cannot see, the

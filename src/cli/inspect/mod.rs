@@ -19,7 +19,8 @@ use serde::Serialize;
 use super::CliError;
 use super::output::{json, print};
 use crate::scans::file::{
-    DETECTED_BY, Family, Grid, OpenScan, ScanFile, foreign as named, open_channel, read_channel,
+    DETECTED_BY, Format as InstrumentFormat, Grid, OpenScan, ScanFile, foreign as named,
+    open_channel, read_channel,
 };
 use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape as Shape;
@@ -116,7 +117,7 @@ impl Inspect {
         }
         let start = self.start()?;
         let format = Format::of(&start);
-        refuse_channel(path, self.erd_channel, Family::detect(&start))?;
+        refuse_channel(path, self.erd_channel, InstrumentFormat::detect(&start))?;
         if let Some(what) = format.not_text() {
             self.scan.refuse(path, what)?;
         }
@@ -159,9 +160,9 @@ impl Inspect {
 fn refuse_channel(
     path: &Path,
     channel: Option<usize>,
-    family: Option<Family>,
+    instrument: Option<InstrumentFormat>,
 ) -> Result<(), CliError> {
-    if channel.is_none() || family == Some(Family::Erd) {
+    if channel.is_none() || instrument == Some(InstrumentFormat::Erd) {
         return Ok(());
     }
     Err(foreign(path, "is no ERD file, of which --erd-channel takes one channel: leave it out"))
@@ -175,7 +176,7 @@ pub(super) fn read_instrument(
     if channel.is_some() {
         let start = first_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
-        refuse_channel(path, channel, Family::detect(&start))?;
+        refuse_channel(path, channel, InstrumentFormat::detect(&start))?;
     }
     Ok(read_channel(path, channel)?)
 }
@@ -185,7 +186,7 @@ fn instrument_file(path: &Path, channel: Option<usize>) -> Result<Finding, CliEr
     let wrong = |problem| CliError::input(FileError { file: path.display().to_string(), problem });
     let source = Source::open(path).map_err(|error| wrong(error.into()))?;
     let scan = open_channel(source, channel).map_err(wrong)?;
-    // The first bytes have told the family, and the file is read again.
+    // The first bytes have told the format, and the file is read again.
     found(path, scan.ok_or_else(|| foreign(path, "changes while it is read"))?)
 }
 
@@ -246,9 +247,9 @@ impl Format {
             Self::Arrow
         } else if start.starts_with(b"\x89HDF\r\n\x1a\n") {
             Self::Hdf5
-        } else if Family::detect(start) == Some(Family::X3p) {
+        } else if InstrumentFormat::detect(start) == Some(InstrumentFormat::X3p) {
             Self::Archive
-        } else if Family::detect(start).is_some() || named(start).is_some() {
+        } else if InstrumentFormat::detect(start).is_some() || named(start).is_some() {
             Self::Instrument
         } else if start.is_empty() {
             Self::Empty

@@ -6,7 +6,7 @@
 //! realisations for the average of a road. Grids that fine would take hours for the first curve alone, and the
 //! average would miss the accuracy all the same.
 
-use super::family::FIRST_REALISATIONS;
+use super::ensemble::FIRST_REALISATIONS;
 use super::work::Work;
 use super::{Bem, CurveRow};
 use crate::artifact::SolveStore;
@@ -41,7 +41,7 @@ struct Verdict {
 ///
 /// # Errors
 /// [`StageError::TooFewRealisations`]; those of the solves.
-pub(crate) fn demand_attainable(
+pub(crate) fn require_attainable(
     parameters: &Bem,
     rubber: &Rubber,
     surfaces: &[Surface],

@@ -11,7 +11,7 @@
 //! of full contact, whose friction is known in closed form ([`LeftOut::closed_form`]).
 
 use super::CurveRow;
-use super::family::FIRST_REALISATIONS;
+use super::ensemble::FIRST_REALISATIONS;
 use crate::numerics::statistics::MeanEstimate;
 use crate::rubber::Rubber;
 use crate::stages::realise::Surface;

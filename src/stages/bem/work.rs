@@ -1,7 +1,7 @@
-//! The curves of all families: those that are missing, solved side by side.
+//! The curves of all ensembles: those that are missing, solved side by side.
 
 use super::curve::Curve;
-use super::family::{CurveResult, Family};
+use super::ensemble::{CurveResult, Ensemble};
 use super::reduction::LeftOut;
 use super::{Bem, CurveRow, Task};
 use crate::artifact::SolveStore;
@@ -32,24 +32,26 @@ impl<'a> Work<'a> {
         Self { parameters, rubber, store, watch, done: AtomicU64::new(0) }
     }
 
-    /// Solves the curves of all families, as many as their averages need.
-    pub fn solve_all(&self, families: &mut [Family]) -> Result<(), StageError> {
-        while families.iter().any(|family| !family.open().is_empty()) {
-            self.solve_open(families)?;
-            self.extend_all(families)?;
+    /// Solves the curves of all ensembles, as many as their averages need.
+    pub fn solve_all(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
+        while ensembles.iter().any(|ensemble| !ensemble.open().is_empty()) {
+            self.solve_open(ensembles)?;
+            self.extend_all(ensembles)?;
         }
         Ok(())
     }
 
     /// The curves that are wanted next and that the store does not have; none if it has all. How many
     /// realisations an accuracy needs follows from those it has.
-    pub fn missing(&self, families: &mut [Family]) -> Result<Vec<Task>, StageError> {
-        while families.iter().any(|family| !family.open().is_empty()) {
+    pub fn missing(&self, ensembles: &mut [Ensemble]) -> Result<Vec<Task>, StageError> {
+        while ensembles.iter().any(|ensemble| !ensemble.open().is_empty()) {
             let mut missing = Vec::new();
-            for family in &*families {
-                for surface in family.open() {
-                    let task =
-                        Task { surface: family.to_solve(surface), speed_mm_s: family.speed_mm_s };
+            for ensemble in &*ensembles {
+                for surface in ensemble.open() {
+                    let task = Task {
+                        surface: ensemble.to_solve(surface),
+                        speed_mm_s: ensemble.speed_mm_s,
+                    };
                     if !task.is_finished(self.parameters, self.rubber, self.store)? {
                         missing.push(task);
                     }
@@ -61,73 +63,73 @@ impl<'a> Work<'a> {
             if self.parameters.average_tolerance.is_none() {
                 break;
             }
-            self.solve_open(families)?;
-            self.extend_all(families)?;
+            self.solve_open(ensembles)?;
+            self.extend_all(ensembles)?;
         }
         Ok(Vec::new())
     }
 
-    fn extend_all(&self, families: &mut [Family]) -> Result<(), StageError> {
+    fn extend_all(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
         let Some(tolerance) = self.parameters.average_tolerance else { return Ok(()) };
-        families.par_iter_mut().try_for_each(|family| self.extend(family, tolerance))
+        ensembles.par_iter_mut().try_for_each(|ensemble| self.extend(ensemble, tolerance))
     }
 
     /// Solves all curves that are wanted, side by side.
-    fn solve_open(&self, families: &mut [Family]) -> Result<(), StageError> {
-        let total: usize = families.iter().map(|family| family.wanted).sum();
+    fn solve_open(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
+        let total: usize = ensembles.iter().map(|ensemble| ensemble.wanted).sum();
         (self.watch.progress)(self.done.load(Ordering::Relaxed), total as u64);
-        let tasks: Vec<(&Family, &Surface)> = families
+        let tasks: Vec<(&Ensemble, &Surface)> = ensembles
             .iter()
-            .flat_map(|family| family.open().iter().map(move |surface| (family, surface)))
+            .flat_map(|ensemble| ensemble.open().iter().map(move |surface| (ensemble, surface)))
             .collect();
         let results: Vec<CurveResult> = tasks
             .par_iter()
-            .map(|(family, surface)| {
+            .map(|(ensemble, surface)| {
                 self.watch.check_interrupt()?;
-                let result = self.of_family(family, surface)?;
+                let result = self.of_family(ensemble, surface)?;
                 (self.watch.progress)(1 + self.done.fetch_add(1, Ordering::Relaxed), total as u64);
                 Ok(result)
             })
             .collect::<Result<_, StageError>>()?;
         let mut results = results.into_iter();
-        for family in families {
-            let count = family.open().len();
-            family.results.extend(results.by_ref().take(count));
+        for ensemble in ensembles {
+            let count = ensemble.open().len();
+            ensemble.results.extend(results.by_ref().take(count));
         }
         Ok(())
     }
 
-    /// The curve of one surface of a family, without the waves that the family leaves out of it.
-    fn of_family(&self, family: &Family, surface: &Surface) -> Result<CurveResult, StageError> {
-        let mut result = self.one_curve(&family.to_solve(surface), family.speed_mm_s)?;
-        if !family.with_all_waves_of(surface) {
-            family.left_out.complete(self.rubber, surface, &mut result.values);
+    /// The curve of one surface of a ensemble, without the waves that the ensemble leaves out of it.
+    fn of_family(&self, ensemble: &Ensemble, surface: &Surface) -> Result<CurveResult, StageError> {
+        let mut result = self.one_curve(&ensemble.to_solve(surface), ensemble.speed_mm_s)?;
+        if !ensemble.with_all_waves_of(surface) {
+            ensemble.left_out.complete(self.rubber, surface, &mut result.values);
         }
         Ok(result)
     }
 
-    /// How many realisations a family needs; if many more, which waves they can do without.
-    fn extend(&self, family: &mut Family, tolerance: f64) -> Result<(), StageError> {
-        let solved = family.results.len();
-        family.extend(tolerance);
+    /// How many realisations a ensemble needs; if many more, which waves they can do without.
+    fn extend(&self, ensemble: &mut Ensemble, tolerance: f64) -> Result<(), StageError> {
+        let solved = ensemble.results.len();
+        ensemble.extend(tolerance);
         // Fields show the whole surface.
         let whole = !self.parameters.field_area_fractions.is_empty();
-        if whole || !LeftOut::pays(solved, family.wanted) {
+        if whole || !LeftOut::pays(solved, ensemble.wanted) {
             return Ok(());
         }
         let full: Vec<&[CurveRow]> =
-            family.results.iter().map(|result| &result.values[..]).collect();
-        let surfaces = &family.surfaces[..solved];
+            ensemble.results.iter().map(|result| &result.values[..]).collect();
+        let surfaces = &ensemble.surfaces[..solved];
         let left_out =
             LeftOut::find(self.rubber, surfaces, &full, tolerance, |surface| {
-                match self.one_curve(surface, family.speed_mm_s) {
+                match self.one_curve(surface, ensemble.speed_mm_s) {
                     Ok(result) => Ok(Some(result.values)),
                     Err(StageError::Contact { .. }) => Ok(None),
                     Err(error) => Err(error),
                 }
             })?;
         if left_out != LeftOut::default() {
-            (family.left_out, family.with_all_waves) = (left_out, solved);
+            (ensemble.left_out, ensemble.with_all_waves) = (left_out, solved);
         }
         Ok(())
     }

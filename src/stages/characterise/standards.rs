@@ -1,7 +1,7 @@
 //! Parameters of the standards: profile parameters, mean profile depth, texture levels.
 
 use super::warnings::left_out;
-use super::{AVERAGE, Characterise, demand_ascending};
+use super::{AVERAGE, Characterise, require_ascending};
 use crate::artifact::Row;
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::filter::{ProfileFilter, waviness};
@@ -72,9 +72,9 @@ impl ProfileDepth {
         }
         let low = Some(self.low_pass_mm);
         let keys = "characterise.profile_depth.(low_pass_mm, high_pass_mm)";
-        demand_ascending(keys, low, self.high_pass_mm)?;
+        require_ascending(keys, low, self.high_pass_mm)?;
         let keys = "characterise.profile_depth.(low_pass_mm, segment_mm)";
-        demand_ascending(keys, low, Some(self.segment_mm))
+        require_ascending(keys, low, Some(self.segment_mm))
     }
 
     fn options(&self) -> DepthOptions {

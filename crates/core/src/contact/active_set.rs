@@ -50,8 +50,8 @@ pub(super) struct Outcome {
     pub changes: usize,
 }
 
-/// Relative tolerance of the linear solves once the set rests, or where looser ones have let it
-/// wander. While it moves the tolerance is one over the number of points: the pressure next to a
+/// Krylov tolerance once the active set is unchanged, or where looser ones have let it wander. While it
+/// moves the tolerance is one over the number of points: the pressure next to a
 /// contact edge, whose sign decides, falls with a power of the spacing between a half and one.
 const TIGHT: f64 = 1e-8;
 /// Share of it once the first iterations have not settled the set: where loss makes the edge condition of one

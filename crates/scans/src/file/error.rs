@@ -58,7 +58,7 @@ pub enum FileProblem {
     Io(#[from] std::io::Error),
     /// The file ends before what its header declares.
     #[error(
-        "{what} needs {needed} bytes from byte {offset} on, but the file has {length}; copy it again"
+        "{what} must have {needed} bytes from byte {offset} on, but the file has {length}; copy it again"
     )]
     Truncated {
         /// What is read there.

@@ -54,12 +54,12 @@ use std::path::Path;
 /// by row, and its chosen lines may have as many.
 pub const LARGEST_POINTS: u64 = 1 << 28;
 
-/// First bytes by which a family is told.
+/// First bytes by which a format is told.
 pub const DETECTED_BY: usize = 1 << 16;
 
-/// Family of instrument files.
+/// Format of instrument files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
+pub enum Format {
     /// Surface data file.
     Sdf,
     /// XML 3-D surface profile.
@@ -78,8 +78,8 @@ pub enum Family {
     Smats,
 }
 
-impl Family {
-    /// The family by the first bytes, `None` for all else.
+impl Format {
+    /// The format by the first bytes, `None` for all else.
     pub fn detect(start: &[u8]) -> Option<Self> {
         /// Longer than any header, of which the first lines are decisive.
         const ENOUGH: usize = 1 << 16;
@@ -293,11 +293,11 @@ impl From<ScanFile> for OpenScan<'_> {
 /// Whether a file, by its first bytes or, of an archive, all of them, is one that [`open`] reads or
 /// names; text and workbooks are not.
 pub fn is_instrument(start: &[u8]) -> bool {
-    !is_workbook(start) && (Family::detect(start).is_some() || foreign(start).is_some())
+    !is_workbook(start) && (Format::detect(start).is_some() || foreign(start).is_some())
 }
 
 /// Opens an instrument file: its header is read, its heights are still to come. `None` if it is
-/// of none of the families: text, or a workbook, which a description goes with.
+/// of none of the formats: text, or a workbook, which a description goes with.
 ///
 /// # Errors
 /// [`FileProblem`] of the header, or a size that the file cannot hold; files of kinds that are known
@@ -314,11 +314,11 @@ pub fn open_channel(
     source: Source<'_>,
     channel: Option<usize>,
 ) -> Result<Option<OpenScan<'_>>, FileProblem> {
-    let Some(family) = Family::detect(source.start()) else {
+    let Some(format) = Format::detect(source.start()) else {
         return foreign(source.start()).map_or(Ok(None), Err);
     };
     let source = source.with_directory()?;
-    if family == Family::X3p {
+    if format == Format::X3p {
         if is_workbook(source.start()) {
             return Ok(None);
         }
@@ -326,20 +326,20 @@ pub fn open_channel(
             return Err(problem);
         }
     }
-    let open = match family {
-        Family::Sdf => sdf::open(source),
-        Family::X3p => x3p::open(source),
-        Family::DigitalSurf => digital_surf::open(source),
-        Family::Erd => erd::open(source, channel),
-        Family::Gwyddion => gwyddion::open(source),
-        Family::WykoAscii => wyko_ascii::read(&source.whole()?).map(OpenScan::from),
-        Family::OpenCrg => opencrg::read(&source.whole()?).map(OpenScan::from),
-        Family::Smats => smats::read(&source.whole()?).map(OpenScan::from),
+    let open = match format {
+        Format::Sdf => sdf::open(source),
+        Format::X3p => x3p::open(source),
+        Format::DigitalSurf => digital_surf::open(source),
+        Format::Erd => erd::open(source, channel),
+        Format::Gwyddion => gwyddion::open(source),
+        Format::WykoAscii => wyko_ascii::read(&source.whole()?).map(OpenScan::from),
+        Format::OpenCrg => opencrg::read(&source.whole()?).map(OpenScan::from),
+        Format::Smats => smats::read(&source.whole()?).map(OpenScan::from),
     };
     open.map(Some)
 }
 
-/// Reads an instrument file; `None` if it is of none of the families.
+/// Reads an instrument file; `None` if it is of none of the formats.
 ///
 /// # Errors
 /// [`FileError`] with the path, the place and what was expected there.
@@ -359,7 +359,7 @@ pub fn read_channel(path: &Path, channel: Option<usize>) -> Result<Option<ScanFi
         .map_err(file_error)
 }
 
-/// Reads the bytes of an instrument file; `None` if they are of none of the families: text, or a
+/// Reads the bytes of an instrument file; `None` if they are of none of the formats: text, or a
 /// workbook, which a description goes with.
 ///
 /// # Errors

@@ -112,16 +112,16 @@ const LINK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></D
 #[test]
 fn families_are_told_by_content() {
     for (bytes, family) in [
-        (b"aBCR-1.0\r\n".as_slice(), Some(Family::Sdf)),
-        (b"bISO-2.0", Some(Family::Sdf)),
+        (b"aBCR-1.0\r\n".as_slice(), Some(Format::Sdf)),
+        (b"bISO-2.0", Some(Format::Sdf)),
         (b"bISO-3.0", None),
-        (b"PK\x03\x04", Some(Family::X3p)),
-        (b"DSCOMPRESSED", Some(Family::DigitalSurf)),
-        (b"ERDFILEV2.00", Some(Family::Erd)),
+        (b"PK\x03\x04", Some(Format::X3p)),
+        (b"DSCOMPRESSED", Some(Format::DigitalSurf)),
+        (b"ERDFILEV2.00", Some(Format::Erd)),
         (b"1.0;2.0", None),
         (b"", None),
     ] {
-        assert_eq!(Family::detect(bytes), family);
+        assert_eq!(Format::detect(bytes), family);
     }
 }
 
@@ -172,7 +172,7 @@ fn a_text_sdf_is_read_and_its_faults_are_named() {
     contains_all(&changed("-3 4", "-3 x"), &["file: line 11", "`x`", "a number or BAD"]);
     contains_all(&changed("-3 4", "-3"), &["the number of heights is `3`", "expected 4 (Num"]);
     let many = changed("NumPoints = 2", "NumPoints = 2147483648");
-    contains_all(&many, &["the heights needs 8589934591 bytes"]);
+    contains_all(&many, &["the heights must have 8589934591 bytes"]);
     contains_all(&changed("NumPoints = 2", "NumPoints = 2147483648000"), &["line 3", "limit"]);
     contains_all(&changed("DataType = 5", "DataType = 9"), &["line 8", "0 to 7"]);
     contains_all(&changed("Xscale", "Xskale"), &["Xscale"]);
@@ -201,10 +201,13 @@ fn a_wyko_header_states_one_wavelength_of_light() {
 fn declared_sizes_are_checked_before_memory_is_asked_for() {
     let heights = [0; 100];
     contains_all(&error(&sdf("bISO-2.0", u32::MAX, u32::MAX, 7, &heights)), &["byte 42", "limit"]);
-    contains_all(&error(&sdf("bISO-2.0", 1 << 20, 1, 7, &heights)), &["the heights needs", "185"]);
+    contains_all(
+        &error(&sdf("bISO-2.0", 1 << 20, 1, 7, &heights)),
+        &["the heights must have", "185"],
+    );
     contains_all(
         &error(&digital_surf(1, 16, i32::MAX, 1, &heights, false)),
-        &["the heights needs 4294967294 bytes from byte 516", "the file has 616"],
+        &["the heights must have 4294967294 bytes from byte 516", "the file has 616"],
     );
     contains_all(&error(&digital_surf(1, 16, -4, 1, &heights, false)), &["byte 108", "`-4`"]);
     let document = x3p_document("D", (1 << 31, 1), LINK);
@@ -217,7 +220,7 @@ fn declared_sizes_are_checked_before_memory_is_asked_for() {
     contains_all(&error(&archive(&members)), &["bindata/data.bin", "`100`", "8388608"]);
     contains_all(
         &error(b"ERDFILEV2.00\n1,4e9,-1,1,5,0.1,-1\nUNITSNAMmm\nXUNITS  m\nEND\n"),
-        &["needs 7999999999", "58"],
+        &["must have 7999999999", "58"],
     );
 }
 
@@ -378,7 +381,7 @@ fn a_gwyddion_text_is_a_map_whatever_its_language() {
     contains_all(&changed("20 nm", "-20 nm"), &["line 3", "spacing"]);
     // Comments of other programmes are no header.
     for other in ["# a\n1 2\n", "# a: 1\n# b: 2 mm\n# c: 3 mm\n# d: 4\n1 2\n"] {
-        assert_eq!(Family::detect(other.as_bytes()), None);
+        assert_eq!(Format::detect(other.as_bytes()), None);
     }
 }
 

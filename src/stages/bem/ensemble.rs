@@ -21,7 +21,7 @@ pub(super) struct CurveResult {
 }
 
 /// One approximation at one speed.
-pub(super) struct Family<'a> {
+pub(super) struct Ensemble<'a> {
     pub speed_mm_s: f64,
     /// All its surfaces.
     pub surfaces: &'a [Surface],
@@ -35,7 +35,7 @@ pub(super) struct Family<'a> {
     pub left_out: LeftOut,
 }
 
-impl<'a> Family<'a> {
+impl<'a> Ensemble<'a> {
     /// All realisations of the surfaces, or the first ones if an accuracy of the average is asked for.
     pub fn new(surfaces: &'a [Surface], speed_mm_s: f64, tolerance: Option<f64>) -> Self {
         let all = surfaces.len();
@@ -136,8 +136,8 @@ mod tests {
     /// from the same sample, which stops early when its spread is small by chance: a few less.
     #[test]
     fn averages_that_stop_when_they_are_good_enough_still_hold_the_mean() {
-        let (mut inside, families) = (0, 400);
-        for seed in 0..families {
+        let (mut inside, ensembles) = (0, 400);
+        for seed in 0..ensembles {
             // Skewed, with a mean of 2/3 and a spread of 0.9 times that; of phase differences, which
             // friction depends on.
             let friction = |k: usize| {
@@ -148,25 +148,25 @@ mod tests {
             let mut count = FIRST_REALISATIONS;
             let surface = Surface { waves: 1, realisation: 1, profile: Vec::new() };
             let surfaces = vec![surface; 5000];
-            let mut family = Family::new(&surfaces, 1.0, Some(0.1));
+            let mut ensemble = Ensemble::new(&surfaces, 1.0, Some(0.1));
             loop {
-                for k in family.results.len()..count {
+                for k in ensemble.results.len()..count {
                     let values = vec![row(friction(k), 0.0)];
-                    family.results.push(CurveResult { solves: vec![], values, fields: vec![] });
+                    ensemble.results.push(CurveResult { solves: vec![], values, fields: vec![] });
                 }
-                family.extend(0.1);
-                if family.wanted == count {
+                ensemble.extend(0.1);
+                if ensemble.wanted == count {
                     break;
                 }
-                assert!(family.wanted > count && family.wanted <= MOST_GROWTH * count);
-                count = family.wanted;
+                assert!(ensemble.wanted > count && ensemble.wanted <= MOST_GROWTH * count);
+                count = ensemble.wanted;
             }
             let values: Vec<f64> = (0..count).map(friction).collect();
             let estimate = MeanEstimate::of(&values);
             assert!(estimate.confidence_95 <= 0.1 * estimate.mean);
             inside += usize::from((estimate.mean - 2.0 / 3.0).abs() <= estimate.confidence_95);
         }
-        let share = inside as f64 / families as f64;
+        let share = inside as f64 / ensembles as f64;
         assert!(share >= 0.92, "{share}");
     }
 }
