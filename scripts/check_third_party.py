@@ -20,15 +20,11 @@ NOTICES = PROJECT / "THIRD-PARTY.md"
 
 def crates_of_the_binary():
     """Names with versions of the crates that the binary for this platform is linked from."""
-    command = ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none"]
+    command = ["cargo", "tree", "--locked", "--package", "asperity", "--edges", "normal,no-proc-macro", "--prefix", "none"]
     listed = subprocess.run(command, cwd=PROJECT, check=True, capture_output=True, text=True).stdout
-    words = [line.split() for line in listed.splitlines()]
-    return {f"{name} {version.removeprefix('v')}" for name, version, *_ in words} - {own_name(words)}
-
-
-def own_name(words):
-    """The project itself, the first line of the tree."""
-    return f"{words[0][0]} {words[0][1].removeprefix('v')}"
+    # Those of the project itself have their folder behind the version.
+    words = [line.split() for line in listed.splitlines() if "(/" not in line]
+    return {f"{name} {version.removeprefix('v')}" for name, version, *_ in words}
 
 
 def main():
