@@ -99,10 +99,7 @@ impl Campaign {
 
     /// The binary in the root folder, with arguments separated by blanks.
     pub fn command(&self, arguments: &str) -> Command {
-        // By `env`, so that an interrupt has its effect where the tests are started in the background of a shell, which
-        // has its children ignore it.
-        let mut command = Command::new("env");
-        command.arg("--default-signal=INT").arg(assert_cmd::cargo::cargo_bin!("asperity"));
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("asperity"));
         command.args(arguments.split_whitespace()).current_dir(self.root());
         command
     }

@@ -42,8 +42,18 @@ fn fine_scan(scan: u32) -> String {
     text
 }
 
+/// A command on which an interrupt has its effect, also where the tests are started in the background of a shell,
+/// which has its children ignore it.
+fn interruptible(campaign: &Campaign, arguments: &str) -> Command {
+    let plain = campaign.command(arguments);
+    let mut command = Command::new("env");
+    command.arg("--default-signal=INT").arg(plain.get_program()).args(plain.get_args());
+    command.current_dir(plain.get_current_dir().unwrap());
+    command
+}
+
 fn start(campaign: &Campaign) -> Child {
-    let mut command = campaign.command("run recipe.toml --out out --threads 1");
+    let mut command = interruptible(campaign, "run recipe.toml --out out --threads 1");
     command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -128,7 +138,7 @@ fn a_single_solve_ends_at_once() {
         "solve bem --wave 0.0625:0.01867 --speed 10 --area 0.02 --points 4194304",
         "solve fem --wave 0.0625:0.01867 --speed 10 --pressure 3 --columns 2048",
     ] {
-        let mut command = campaign.command(arguments);
+        let mut command = interruptible(&campaign, arguments);
         let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(Duration::from_secs(1));
         send("INT", &child);
