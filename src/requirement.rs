@@ -45,7 +45,7 @@ pub enum InvalidRecipe {
         "section [hybrid] without [micro]: the correction is made of the microscale; add [micro]"
     )]
     HybridWithoutMicro,
-    /// A recipe of several cases where one is wanted.
+    /// A recipe of several cases, given to a command that takes one.
     #[error(
         "the recipe has a section [sweep] of {cases} cases: `asperity run` runs them all, `asperity \
          sweep` spreads them over machines; a finished case CASE has a recipe of its own: \

@@ -23,7 +23,7 @@ struct Key {
     key: String,
 }
 
-/// The keys of the stages of a recipe, of its first case if it has several; none if its scans are not there.
+/// Returns the keys of the stages of a recipe, or of its first case; `None` if its scans are missing.
 fn keys(name: &str) -> Option<Vec<Key>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipelines").join(format!("{name}.toml"));
     let mut recipe = Recipe::read(&path).unwrap();
