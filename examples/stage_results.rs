@@ -4,7 +4,7 @@
 //!     cargo run --release --example stage_results RUN OUT.arrow
 
 use asperity::artifact::{Metadata, Row, RunView, data_frame, write_table};
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
+use asperity::stages::tables::FRICTION;
 use polars::prelude::SortMultipleOptions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [run, out] = &arguments[..] else { return Err("wanted: RUN OUT.arrow".into()) };
     // Read by its schema, its digest compared.
-    let (friction, _) = RunView::of(run).read_table::<FrictionRow>("tables", FRICTION_FILE)?;
+    let friction = RunView::of(run).rows(FRICTION)?;
     let heat: Vec<HeatRow> = friction
         .iter()
         .map(|row| {

@@ -22,6 +22,7 @@ mod content;
 mod digest;
 mod error;
 mod frame;
+mod handle;
 mod layout;
 mod lock;
 mod manifest;
@@ -39,6 +40,7 @@ pub use columns::{Column, ColumnType, Row, columns};
 pub use digest::{Digest, Digesting};
 pub use error::ArtifactError;
 pub use frame::{csv_bytes, data_frame, parquet_bytes};
+pub use handle::{ArrayFile, ResultFile, Table};
 pub use manifest::{Identity, Input, Manifest, Output, SchemaVersion};
 pub use own::{CASES_FOLDER, SURFACES_FOLDER};
 pub(crate) use own::{NOTE_FILE, NOTE_HEAD, temporary_beside, write_note};
@@ -47,7 +49,7 @@ pub use schema::{check_or_write, table_schema};
 pub(crate) use solves::write_by_rename;
 pub use solves::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, read_pack_info};
 pub use solves::{SOLVE_SCHEMA, SolveStore, Solves, StoredSolve, read_stored_solve};
-pub use store::{Pending, ResultFile, RunFolder, RunView, SOLVES_FOLDER};
+pub use store::{Pending, RunFolder, RunView, SOLVES_FOLDER};
 pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
 
 /// Version of the tool that writes an artifact; recorded in every file and no part of any digest.

@@ -18,8 +18,8 @@ use super::lock;
 use super::own::{self, Place};
 use super::table::{decode_rows, read_bytes};
 use super::{
-    ArrayDataset, ArtifactError, Digest, Manifest, Metadata, Output, Row, Storage, read_arrays,
-    table_info, write_arrays, write_table,
+    ArrayDataset, ArrayFile, ArtifactError, Digest, Manifest, Metadata, Output, ResultFile, Row,
+    Storage, Table, read_arrays, table_info, write_arrays, write_table,
 };
 
 /// Folder of the stored solves in a run folder.
@@ -31,15 +31,6 @@ pub struct RunView {
     path: PathBuf,
     /// The files that may be read; all if `None`.
     declared: Option<Vec<ResultFile>>,
-}
-
-/// A file of the result of a stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ResultFile {
-    /// Name of the stage.
-    pub stage: &'static str,
-    /// Name of the file.
-    pub file: &'static str,
 }
 
 impl RunView {
@@ -63,6 +54,21 @@ impl RunView {
     /// Path of a file of a result, whether it exists or not.
     pub fn file(&self, stage: &str, file: &str) -> PathBuf {
         self.path.join(stage).join(file)
+    }
+
+    /// Path of a file of a result, whether it exists or not.
+    pub fn path_of(&self, file: impl Into<ResultFile>) -> PathBuf {
+        let ResultFile { stage, name } = file.into();
+        self.file(stage, name)
+    }
+
+    /// Whether the result of a stage has that file.
+    ///
+    /// # Errors
+    /// Those of [`RunView::stage_manifest`].
+    pub fn has(&self, file: impl Into<ResultFile>) -> Result<bool, ArtifactError> {
+        let ResultFile { stage, name } = file.into();
+        Ok(self.stage_manifest(stage)?.is_some_and(|manifest| manifest.output(name).is_some()))
     }
 
     /// The manifest of the current result; none if the stage has no finished one.
@@ -103,18 +109,22 @@ impl RunView {
         manifest.outputs.iter().try_for_each(|output| self.verify_output(stage, output))
     }
 
-    /// Reads a table of a result after comparing its bytes with the manifest.
+    /// The rows of a table of a result.
+    ///
+    /// # Errors
+    /// Those of [`RunView::read_table`].
+    pub fn rows<R: Row>(&self, table: Table<R>) -> Result<Vec<R>, ArtifactError> {
+        Ok(self.read_table(table)?.0)
+    }
+
+    /// Reads a table of a result with its metadata, after comparing its bytes with the manifest.
     ///
     /// # Errors
     /// Those of [`RunView::verify`] and [`read_table`](super::read_table),
-    /// [`ArtifactError::NoSuchOutput`].
-    pub fn read_table<R: Row>(
-        &self,
-        stage: &str,
-        file: &str,
-    ) -> Result<(Vec<R>, Metadata), ArtifactError> {
-        let output = self.finished_output(stage, file)?;
-        let path = self.file(stage, file);
+    /// [`ArtifactError::NoSuchOutput`], [`ArtifactError::Undeclared`].
+    pub fn read_table<R: Row>(&self, table: Table<R>) -> Result<(Vec<R>, Metadata), ArtifactError> {
+        let output = self.finished_output(table.file())?;
+        let path = self.path_of(table);
         let bytes = read_bytes(&path)?;
         check_size(&path, output.size, bytes.len() as u64)?;
         ArtifactError::check_digest(&path, output.bytes_digest, Digest::of_bytes(&bytes))?;
@@ -125,16 +135,10 @@ impl RunView {
     ///
     /// # Errors
     /// Those of [`RunView::verify`] and [`read_arrays`], [`ArtifactError::NoSuchOutput`].
-    pub fn read_arrays(
-        &self,
-        stage: &str,
-        file: &str,
-        schema: &str,
-        version: u32,
-    ) -> Result<Vec<ArrayDataset>, ArtifactError> {
-        let output = self.finished_output(stage, file)?;
-        self.verify_bytes(stage, &output)?;
-        read_arrays(&self.file(stage, file), schema, version)
+    pub fn read_arrays(&self, arrays: ArrayFile) -> Result<Vec<ArrayDataset>, ArtifactError> {
+        let output = self.finished_output(arrays.file)?;
+        self.verify_bytes(arrays.file.stage, &output)?;
+        read_arrays(&self.path_of(arrays), arrays.schema, arrays.version)
     }
 
     /// Fails if a new result of the stage would have to replace what asperity did not write.
@@ -168,19 +172,18 @@ impl RunView {
         })
     }
 
-    fn finished_output(&self, stage: &str, file: &str) -> Result<Output, ArtifactError> {
-        if let Some(declared) = &self.declared
-            && !declared.iter().any(|known| (known.stage, known.file) == (stage, file))
-        {
-            let (stage, file) = (stage.to_owned(), file.to_owned());
+    fn finished_output(&self, file: ResultFile) -> Result<Output, ArtifactError> {
+        let ResultFile { stage, name } = file;
+        if self.declared.as_ref().is_some_and(|declared| !declared.contains(&file)) {
+            let (stage, file) = (stage.to_owned(), name.to_owned());
             return Err(ArtifactError::Undeclared { stage, file });
         }
         let manifest = self.finished(stage)?;
-        manifest.output(file).cloned().ok_or_else(|| {
+        manifest.output(name).cloned().ok_or_else(|| {
             let names: Vec<_> = manifest.outputs.iter().map(|o| o.file.as_str()).collect();
             ArtifactError::NoSuchOutput {
                 stage: stage.to_owned(),
-                file: file.to_owned(),
+                file: name.to_owned(),
                 available: names.join(", "),
             }
         })
@@ -301,14 +304,22 @@ impl Pending<'_> {
     ///
     /// # Errors
     /// Those of [`write_table`].
+    pub fn write_rows<R: Row>(&mut self, table: Table<R>, rows: &[R]) -> Result<(), ArtifactError> {
+        self.write_table(table, rows, &Metadata::new())
+    }
+
+    /// Writes a table with metadata and records it as an output.
+    ///
+    /// # Errors
+    /// Those of [`write_table`].
     pub fn write_table<R: Row>(
         &mut self,
-        file: &str,
+        table: Table<R>,
         rows: &[R],
         metadata: &Metadata,
     ) -> Result<(), ArtifactError> {
-        let content = write_table(&self.path(file)?, rows, metadata)?;
-        self.record(file, R::SCHEMA, R::VERSION, Some(content))
+        let content = write_table(&self.path(table.name())?, rows, metadata)?;
+        self.record(table.name(), R::SCHEMA, R::VERSION, Some(content))
     }
 
     /// Writes arrays and records them as an output.
@@ -317,16 +328,14 @@ impl Pending<'_> {
     /// Those of [`write_arrays`].
     pub fn write_arrays(
         &mut self,
-        file: &str,
-        schema: &str,
-        version: u32,
-        description: &str,
+        arrays: ArrayFile,
         storage: Storage,
         datasets: &[ArrayDataset],
     ) -> Result<(), ArtifactError> {
-        let content =
-            write_arrays(&self.path(file)?, schema, version, description, storage, datasets)?;
-        self.record(file, schema, version, Some(content))
+        let ArrayFile { file, schema, version, description } = arrays;
+        let path = self.path(file.name)?;
+        let content = write_arrays(&path, schema, version, description, storage, datasets)?;
+        self.record(file.name, schema, version, Some(content))
     }
 
     /// Writes a text for people, as Markdown or SVG, and records it as an output of the schema

@@ -6,8 +6,8 @@ use super::half_space::surface;
 use super::{Case, Failure, Method, Prepared, Reference};
 use crate::fem::profile::RigidProfile;
 use crate::rubber::Rubber;
-use crate::stages::bem::{CURVES_FILE, CurveRow};
-use crate::stages::hybrid::{HYBRID_FILE, HybridRow};
+use crate::stages::bem::CURVES;
+use crate::stages::hybrid::HYBRID;
 use crate::stages::realise::read_surfaces;
 use crate::surface::Wave;
 
@@ -47,7 +47,7 @@ fn hybrid(columns: u32) -> Result<Prepared, Failure> {
     let campaign = Campaign::new(&surface(WAVES), 1, &sections)?;
     Ok(Box::new(move || {
         campaign.run(|run| {
-            let rows = run.read_table::<HybridRow>("hybrid", HYBRID_FILE)?.0;
+            let rows = run.rows(HYBRID)?;
             let friction = rows.first().and_then(|row| row.friction_coefficient);
             Ok(vec![friction.ok_or("no corrected friction: the microscale ended before it")?])
         })
@@ -68,7 +68,7 @@ fn all_waves(columns: u32) -> Result<Prepared, Failure> {
 fn realisation() -> Result<(Vec<Wave>, f64), Failure> {
     Campaign::new(&surface(WAVES), 1, HALF_SPACE)?.run(|run| {
         let surface = read_surfaces(run)?.into_iter().next().ok_or("no surface was drawn")?;
-        let curves = run.read_table::<CurveRow>("bem", CURVES_FILE)?.0;
+        let curves = run.rows(CURVES)?;
         let row = curves.first().ok_or("no contact was solved")?;
         Ok((surface.profile, 1e6 * row.pressure_mpa))
     })

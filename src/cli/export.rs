@@ -20,11 +20,8 @@ use crate::report::{
     markdown, workbook,
 };
 use crate::stages::Stage;
-use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE, cleaning_markdown};
-use crate::stages::tables::{
-    COMPARISON_FILE, CORRECTIONS_FILE, ComparisonRow, CorrectionRow, FRICTION_FILE, FrictionRow,
-    Model, NOTE_KEY,
-};
+use crate::stages::ingest::{FAULTS, REPORT, WINDOWS, cleaning_markdown};
+use crate::stages::tables::{COMPARISON, CORRECTIONS, FRICTION, FrictionRow, Model, NOTE_KEY};
 use crate::sweep::STAGE;
 
 const EXAMPLES: &str = "\
@@ -123,7 +120,7 @@ impl Export {
             return self.study(&view);
         }
         self.warn_of_doubt("tables", quiet);
-        let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE)?;
+        let rows = view.rows(FRICTION)?;
         if self.comparison {
             return self.comparison(&view);
         }
@@ -185,9 +182,9 @@ impl Export {
         }
         view.verify("ingest")?;
         self.warn_of_doubt("ingest", quiet);
-        let (scans, _) = view.read_table("ingest", REPORT_FILE)?;
-        let (faults, _) = view.read_table("ingest", FAULTS_FILE)?;
-        let (windows, _) = view.read_table("ingest", WINDOWS_FILE)?;
+        let scans = view.rows(REPORT)?;
+        let faults = view.rows(FAULTS)?;
+        let windows = view.rows(WINDOWS)?;
         self.text(&cleaning_markdown(&scans, &faults, &windows, &BTreeMap::new()))
     }
 
@@ -223,15 +220,9 @@ impl Export {
         if self.format != Format::Markdown {
             return Err(CliError::input("a comparison is a document: give --format markdown"));
         }
-        let (compared, metadata) = view.read_table::<ComparisonRow>("tables", COMPARISON_FILE)?;
+        let (compared, metadata) = view.read_table(COMPARISON)?;
         let note = metadata.get(NOTE_KEY).map_or("", String::as_str);
-        let manifest = view.stage_manifest("tables")?;
-        let has_corrections =
-            manifest.is_some_and(|manifest| manifest.output(CORRECTIONS_FILE).is_some());
-        let corrections = match has_corrections {
-            true => view.read_table::<CorrectionRow>("tables", CORRECTIONS_FILE)?.0,
-            false => Vec::new(),
-        };
+        let corrections = if view.has(CORRECTIONS)? { view.rows(CORRECTIONS)? } else { Vec::new() };
         self.text(&comparison_markdown(note, &compared, &corrections))
     }
 

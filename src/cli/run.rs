@@ -18,7 +18,7 @@ use crate::artifact::{Manifest, RunFolder, RunView};
 use crate::files::name::path_text;
 use crate::pipeline::{Event, PipelineError, Ready, Selection};
 use crate::recipe::Recipe;
-use crate::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
+use crate::stages::ingest::{CLEANING_FILE, FAULTS, FaultRow};
 use crate::stages::{Stage, Watch};
 use crate::sweep;
 
@@ -220,7 +220,7 @@ fn warn(quiet: bool, manifest: &Manifest) {
 fn cleaned(quiet: bool, out: &Path) {
     let view = RunView::of(out);
     // A summary must not fail a run that has its results: whoever reads them next says why.
-    let Ok((rows, _)) = view.read_table::<FaultRow>("ingest", FAULTS_FILE) else { return };
+    let Ok((rows, _)) = view.read_table(FAULTS) else { return };
     let taken = |row: &&FaultRow| {
         row.count > 0 && matches!(row.decision.as_str(), "missing" | "cut" | "averaged")
     };

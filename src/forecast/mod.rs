@@ -25,7 +25,7 @@ use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages;
 use crate::stages::bem::{
-    self, CURVES_FILE, CurveRow, FIRST_REALISATIONS, SOLVES_FILE, SolveRow, realisations_needed,
+    self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, realisations_needed,
 };
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Chain, Job};
@@ -259,8 +259,8 @@ impl Trial {
         Ok(Self {
             rubber: bem::rubber(chain.bem)?.rubber,
             surfaces: read_surfaces(view)?,
-            curves: view.read_table::<CurveRow>("bem", CURVES_FILE)?.0,
-            solves: view.read_table::<SolveRow>("bem", SOLVES_FILE)?.0,
+            curves: view.rows(CURVES)?,
+            solves: view.rows(SOLVES)?,
         })
     }
 

@@ -78,7 +78,7 @@ impl<'a> Plan<'a> {
         let mut inputs = Vec::new();
         for read in &planned.reads {
             let manifest = view.stage_manifest(read.stage)?;
-            inputs.extend(manifest.and_then(|manifest| manifest.input(read.file)));
+            inputs.extend(manifest.and_then(|manifest| manifest.input(read.name)));
         }
         inputs.extend(planned.inputs.iter().cloned());
         Ok(Identity {

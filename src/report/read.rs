@@ -1,6 +1,6 @@
 //! What figures and reports read of a run.
 
-use crate::artifact::{ArtifactError, Metadata, Row, RunView};
+use crate::artifact::{ArtifactError, Metadata, Row, RunView, Table};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::plot::FigureError;
 use crate::stages::StageError;
@@ -42,28 +42,14 @@ impl HasKind for ReportError {
 }
 
 /// The rows of a table, or none if the run has no such result.
-pub(super) fn rows<R: Row>(
-    run: &RunView,
-    stage: &str,
-    file: &str,
-) -> Result<Option<Vec<R>>, ReportError> {
-    Ok(table(run, stage, file)?.map(|(rows, _)| rows))
+pub(super) fn rows<R: Row>(run: &RunView, wanted: Table<R>) -> Result<Option<Vec<R>>, ReportError> {
+    Ok(table(run, wanted)?.map(|(rows, _)| rows))
 }
 
 /// The rows of a table and its metadata, or none if the run has no such result.
 pub(super) fn table<R: Row>(
     run: &RunView,
-    stage: &str,
-    file: &str,
+    wanted: Table<R>,
 ) -> Result<Option<(Vec<R>, Metadata)>, ReportError> {
-    if !has(run, stage, file)? {
-        return Ok(None);
-    }
-    Ok(Some(run.read_table(stage, file)?))
-}
-
-/// Whether a stage has that file.
-pub(super) fn has(run: &RunView, stage: &str, file: &str) -> Result<bool, ReportError> {
-    let manifest = run.stage_manifest(stage)?;
-    Ok(manifest.is_some_and(|manifest| manifest.output(file).is_some()))
+    Ok(if run.has(wanted)? { Some(run.read_table(wanted)?) } else { None })
 }

@@ -3,10 +3,9 @@
 use super::ReportError;
 use crate::artifact::RunView;
 use crate::report::read::rows;
-use crate::stages;
 use crate::stages::sinusoid::{
-    AGREEMENT_FILE, ASYMPTOTES_FILE, AgreementRow, AsymptoteRow, Model, PEAKS_FILE, POINTS_FILE,
-    PRESSURES_FILE, PeakRow, PointRow,
+    AGREEMENT, ASYMPTOTES, AgreementRow, AsymptoteRow, Model, PEAKS, POINTS, PRESSURES, PeakRow,
+    PointRow,
 };
 use std::fmt::Write;
 
@@ -42,13 +41,12 @@ impl Study {
     /// # Errors
     /// [`ReportError`] if its tables cannot be read.
     pub fn read(run: &RunView) -> Result<Self, ReportError> {
-        let stage = stages::sinusoid::STAGE.name();
         Ok(Self {
-            points: run.read_table(stage, POINTS_FILE)?.0,
-            pressures: rows(run, stage, PRESSURES_FILE)?.unwrap_or_default(),
-            asymptotes: run.read_table(stage, ASYMPTOTES_FILE)?.0,
-            peaks: run.read_table(stage, PEAKS_FILE)?.0,
-            agreement: run.read_table(stage, AGREEMENT_FILE)?.0,
+            points: run.rows(POINTS)?,
+            pressures: rows(run, PRESSURES)?.unwrap_or_default(),
+            asymptotes: run.rows(ASYMPTOTES)?,
+            peaks: run.rows(PEAKS)?,
+            agreement: run.rows(AGREEMENT)?,
         })
     }
 

@@ -1,11 +1,11 @@
 //! approximate: amplitudes of superposed sines with the correlation of the scans.
 
 use super::characterise::{
-    AVERAGE, CORRELATION_FILE, CorrelationRow, RELIABLE_KEY, WINDOW_LENGTH_KEY, length_in,
+    AVERAGE, CORRELATION, CorrelationRow, RELIABLE_KEY, WINDOW_LENGTH_KEY, length_in,
 };
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::{Stage, StageError, schema_of};
-use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
+use super::{Stage, StageError};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion, Table};
 use crate::numerics::statistics::jackknife_95;
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::SineScale;
@@ -20,9 +20,6 @@ use std::collections::BTreeMap;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 3;
-
-/// The amplitudes, which other stages read.
-pub(crate) const WAVES: ResultFile = ResultFile { stage: "approximate", file: WAVES_FILE };
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -40,8 +37,9 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run =
         |inputs: &Inputs, context: &mut Context| run(chain.approximate, &inputs.results, context);
     // A chain that states its waves needs no scans.
-    let correlation = chain.ingest.map(|_| super::characterise::CORRELATION);
-    Some(Planned::new(json!(chain.approximate), run).reading(correlation))
+    let scanned = chain.ingest.is_some();
+    let planned = Planned::new(json!(chain.approximate), run);
+    Some(planned.reading_if(scanned, super::characterise::CORRELATION))
 }
 
 /// Section `[approximate]` of a recipe.
@@ -139,11 +137,11 @@ impl Approximate {
 }
 
 /// The fitted waves: `waves.arrow`.
-pub const WAVES_FILE: &str = "waves.arrow";
+pub const WAVES: Table<ScaleRow> = Table::new("approximate", "waves.arrow");
 /// How good each fit is: `fits.arrow`.
-pub const FITS_FILE: &str = "fits.arrow";
+pub const FITS: Table<FitRow> = Table::new("approximate", "fits.arrow");
 /// Measured and fitted correlation: `fitted_correlation.arrow`.
-pub const FITTED_FILE: &str = "fitted_correlation.arrow";
+pub const FITTED: Table<FittedRow> = Table::new("approximate", "fitted_correlation.arrow");
 
 /// One fitted sine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -224,7 +222,7 @@ impl Row for FittedRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<ScaleRow>(), schema_of::<FitRow>(), schema_of::<FittedRow>()]
+    vec![WAVES.schema(), FITS.schema(), FITTED.schema()]
 }
 
 /// Fits the waves and writes the results; returns warnings.
@@ -239,7 +237,7 @@ pub fn run(
     if !parameters.given.is_empty() {
         return write_given(parameters, context);
     }
-    let (rows, metadata) = run.read_table::<CorrelationRow>("characterise", CORRELATION_FILE)?;
+    let (rows, metadata) = run.read_table(CORRELATION)?;
     let window_length = length_in(&metadata, WINDOW_LENGTH_KEY)?;
     let reliable_mm = metadata.get(RELIABLE_KEY).cloned().unwrap_or_default();
     // The schema of the correlation has had it from revision 4 on.
@@ -278,9 +276,9 @@ pub fn run(
         .map(|(i, w)| (format!("warning {}", i + 1), w.clone()))
         .chain([(RELIABLE_KEY.to_owned(), reliable_mm)])
         .collect();
-    context.pending.write_table(WAVES_FILE, &scales, &metadata)?;
-    context.pending.write_table(FITS_FILE, &fits, &metadata)?;
-    context.pending.write_table(FITTED_FILE, &fitted, &metadata)?;
+    context.pending.write_table(WAVES, &scales, &metadata)?;
+    context.pending.write_table(FITS, &fits, &metadata)?;
+    context.pending.write_table(FITTED, &fitted, &metadata)?;
     Ok(warnings)
 }
 
@@ -325,7 +323,7 @@ fn write_given(parameters: &Approximate, context: &mut Context) -> Result<Vec<St
     let rows: Vec<_> = rows.collect();
     let source = |given: &GivenWaves| (format!("source {}", given.number()), given.source.clone());
     let metadata: Metadata = parameters.given.iter().map(source).collect();
-    context.pending.write_table(WAVES_FILE, &rows, &metadata)?;
+    context.pending.write_table(WAVES, &rows, &metadata)?;
     Ok(Vec::new())
 }
 

@@ -11,7 +11,7 @@ mod work;
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::realise::{Surface, read_surfaces};
 use super::{Stage, StageError, Watch};
-use crate::artifact::{ArrayDataset, Metadata, Pending, ResultFile, RunView, SolveStore, Storage};
+use crate::artifact::{ArrayDataset, Pending, RunView, SolveStore, Storage};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
@@ -19,10 +19,9 @@ pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
 use ensemble::{CurveResult, Ensemble};
 pub(crate) use ensemble::{FIRST_REALISATIONS, realisations_needed};
-use rows::FIELDS_DESCRIPTION;
 pub use rows::{
-    CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, REALISATIONS_FILE,
-    RealisationsRow, SOLVES_FILE, SolveRow, fields_schema, schemas,
+    CURVES, CurveRow, FIELDS, REALISATIONS, RealisationsRow, SOLVES, SolveRow, fields_schema,
+    schemas,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,11 +32,6 @@ use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 4;
-
-/// Friction over contact area, which other stages read.
-pub(crate) const CURVES: ResultFile = ResultFile { stage: "bem", file: CURVES_FILE };
-/// The solved contacts, which other stages read.
-pub(crate) const SOLVES: ResultFile = ResultFile { stage: "bem", file: SOLVES_FILE };
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -56,7 +50,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(bem, material, &inputs.results, &inputs.store()?, context)
     };
-    Some(Planned::new(bem.resolved(material), run).reading([super::realise::SURFACES]))
+    Some(Planned::new(bem.resolved(material), run).reading(super::realise::SURFACES))
 }
 
 const SPEEDS: &str = "one speed or more from 1e-9 to 1e9 mm/s, without repeats";
@@ -260,21 +254,6 @@ fn require_for_all(
     Ok(())
 }
 
-/// The curve of one surface at one speed; what is not in the store is solved.
-///
-/// # Errors
-/// [`StageError::Contact`], [`StageError::Interrupted`], those of the store.
-pub(crate) fn curve(
-    parameters: &Bem,
-    rubber: &Rubber,
-    surface: &Surface,
-    speed_mm_s: f64,
-    store: &SolveStore,
-    watch: Watch,
-) -> Result<Vec<CurveRow>, StageError> {
-    Ok(Work::new(parameters, rubber, store, watch).one_curve(surface, speed_mm_s)?.values)
-}
-
 fn ensembles<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Ensemble<'a>> {
     let tolerance = parameters.average_tolerance;
     surfaces
@@ -296,7 +275,6 @@ fn excited(parameters: &Bem, surfaces: &[Surface]) -> Option<FrequencyRange> {
 
 /// Writes the results by number of waves, realisation and speed.
 fn write(pending: &mut Pending, ensembles: &[Ensemble]) -> Result<(), StageError> {
-    let none = Metadata::new();
     let mut results: Vec<&CurveResult> = Vec::new();
     for of_one in ensembles.chunk_by(|a, b| std::ptr::eq(a.surfaces, b.surfaces)) {
         let most = of_one.iter().map(|ensemble| ensemble.results.len()).max().unwrap_or(0);
@@ -305,17 +283,15 @@ fn write(pending: &mut Pending, ensembles: &[Ensemble]) -> Result<(), StageError
         }
     }
     let solves: Vec<_> = results.iter().flat_map(|r| r.solves.iter().cloned()).collect();
-    pending.write_table(SOLVES_FILE, &solves, &none)?;
+    pending.write_rows(SOLVES, &solves)?;
     let values: Vec<_> = results.iter().flat_map(|r| r.values.iter().cloned()).collect();
-    pending.write_table(CURVES_FILE, &values, &none)?;
+    pending.write_rows(CURVES, &values)?;
     let counts: Vec<_> = ensembles.iter().filter_map(realisations_row).collect();
-    pending.write_table(REALISATIONS_FILE, &counts, &none)?;
+    pending.write_rows(REALISATIONS, &counts)?;
     let fields: Vec<ArrayDataset> =
         results.iter().flat_map(|r| r.fields.iter().flat_map(FieldSolution::datasets)).collect();
     if !fields.is_empty() {
-        let (schema, description) = (FIELDS_SCHEMA, FIELDS_DESCRIPTION);
-        let storage = Storage::Compressed;
-        pending.write_arrays(FIELDS_FILE, schema, FIELDS_VERSION, description, storage, &fields)?;
+        pending.write_arrays(FIELDS, Storage::Compressed, &fields)?;
     }
     Ok(())
 }

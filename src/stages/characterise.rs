@@ -6,17 +6,15 @@ mod standards;
 mod warnings;
 
 pub use spectrum::{
-    AGREEMENT_FILE, AgreementRow, HURST_FILE, HurstRow, ISOTROPIC_FILE, IsotropicRow,
-    LARGEST_DIFFERENCE_KEY, SPECTRUM_FILE, SpectrumRow,
+    AGREEMENT, AgreementRow, HURST, HurstRow, ISOTROPIC, IsotropicRow, LARGEST_DIFFERENCE_KEY,
+    SPECTRUM, SpectrumRow,
 };
-pub use standards::{
-    DEPTH_FILE, DepthRow, PROFILE_FILE, ProfileDepth, ProfileRow, TEXTURE_FILE, TextureRow,
-};
+pub use standards::{DEPTH, DepthRow, PROFILE, ProfileDepth, ProfileRow, TEXTURE, TextureRow};
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::ingest::read_windows;
-use super::{Stage, StageError, schema_of};
-use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
+use super::{Stage, StageError};
+use crate::artifact::{Metadata, Row, RunView, SchemaVersion, Table};
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::LineScan;
@@ -51,7 +49,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     chain.ingest?;
     let run =
         |inputs: &Inputs, context: &mut Context| run(chain.characterise, &inputs.results, context);
-    Some(Planned::new(json!(chain.characterise), run).reading([super::ingest::SCANS]))
+    Some(Planned::new(json!(chain.characterise), run).reading(super::ingest::SCANS))
 }
 
 /// Section `[characterise]` of a recipe.
@@ -201,19 +199,16 @@ fn require_ascending(
 }
 
 /// Parameters of each window: `parameters.arrow`.
-pub const PARAMETERS_FILE: &str = "parameters.arrow";
+pub const PARAMETERS: Table<ParametersRow> = Table::new("characterise", "parameters.arrow");
 /// Averages of the parameters: `averages.arrow`.
-pub const AVERAGES_FILE: &str = "averages.arrow";
+pub const AVERAGES: Table<AverageRow> = Table::new("characterise", "averages.arrow");
 /// Correlation at log-spaced lags, per window and averaged: `correlation.arrow`.
-pub const CORRELATION_FILE: &str = "correlation.arrow";
-/// The correlation, which other stages read.
-pub(crate) const CORRELATION: ResultFile =
-    ResultFile { stage: "characterise", file: CORRELATION_FILE };
+pub const CORRELATION: Table<CorrelationRow> = Table::new("characterise", "correlation.arrow");
 /// Self-affine fit, per window and averaged: `self_affine.arrow`.
-pub const SELF_AFFINE_FILE: &str = "self_affine.arrow";
-/// Metadata of [`CORRELATION_FILE`]: length of the shortest window in millimetres.
+pub const SELF_AFFINE: Table<SelfAffineRow> = Table::new("characterise", "self_affine.arrow");
+/// Metadata of [`CORRELATION`]: length of the shortest window in millimetres.
 pub const WINDOW_LENGTH_KEY: &str = "window_length_mm";
-/// Metadata of [`CORRELATION_FILE`] and [`SPECTRUM_FILE`]: shortest wavelength in millimetres that the
+/// Metadata of [`CORRELATION`] and [`SPECTRUM`]: shortest wavelength in millimetres that the
 /// instrument and its spacing show as it is.
 pub const RELIABLE_KEY: &str = "shortest_reliable_wavelength_mm";
 
@@ -357,17 +352,17 @@ impl Row for SelfAffineRow {
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     vec![
-        schema_of::<ParametersRow>(),
-        schema_of::<AverageRow>(),
-        schema_of::<CorrelationRow>(),
-        schema_of::<SpectrumRow>(),
-        schema_of::<IsotropicRow>(),
-        schema_of::<HurstRow>(),
-        schema_of::<AgreementRow>(),
-        schema_of::<SelfAffineRow>(),
-        schema_of::<ProfileRow>(),
-        schema_of::<DepthRow>(),
-        schema_of::<TextureRow>(),
+        PARAMETERS.schema(),
+        AVERAGES.schema(),
+        CORRELATION.schema(),
+        SPECTRUM.schema(),
+        ISOTROPIC.schema(),
+        HURST.schema(),
+        AGREEMENT.schema(),
+        SELF_AFFINE.schema(),
+        PROFILE.schema(),
+        DEPTH.schema(),
+        TEXTURE.schema(),
     ]
 }
 
@@ -391,10 +386,9 @@ pub fn run(
     let mean_spectrum = PowerSpectrum::average(&spectra)?;
 
     let names: Vec<&str> = windows.iter().map(|window| window.name.as_str()).collect();
-    let none = Metadata::new();
     let rows: Vec<_> = roughness.iter().map(parameters_row).collect();
-    context.pending.write_table(PARAMETERS_FILE, &rows, &none)?;
-    context.pending.write_table(AVERAGES_FILE, &average_rows(&roughness)?, &none)?;
+    context.pending.write_rows(PARAMETERS, &rows)?;
+    context.pending.write_rows(AVERAGES, &average_rows(&roughness)?)?;
 
     let with_average = || names.iter().copied().chain([AVERAGE]);
     let rows: Vec<_> = with_average()
@@ -405,32 +399,32 @@ pub fn run(
     let cut_off = (RELIABLE_KEY.to_owned(), (reliable * 1e3).to_string());
     let window_length = (WINDOW_LENGTH_KEY.to_owned(), shortest_window_mm(&windows));
     let metadata = Metadata::from([window_length, cut_off.clone()]);
-    context.pending.write_table(CORRELATION_FILE, &rows, &metadata)?;
+    context.pending.write_table(CORRELATION, &rows, &metadata)?;
     let spectrum_rows = spectrum::spectrum_rows(parameters, &names, &spectra)?;
     let mut metadata = spectrum::conventions(parameters);
     metadata.extend([cut_off]);
-    context.pending.write_table(SPECTRUM_FILE, &spectrum_rows, &metadata)?;
+    context.pending.write_table(SPECTRUM, &spectrum_rows, &metadata)?;
     context.check_interrupt()?;
     let (rows, told) = standards::profile_rows(parameters, &windows);
     warnings.extend(told);
-    context.pending.write_table(PROFILE_FILE, &rows, &none)?;
+    context.pending.write_rows(PROFILE, &rows)?;
     let (rows, told) = standards::depth_rows(parameters, &windows);
     warnings.extend(told);
-    context.pending.write_table(DEPTH_FILE, &rows, &none)?;
+    context.pending.write_rows(DEPTH, &rows)?;
     let rows = standards::texture_rows(&names, &spectra, &mean_spectrum);
-    context.pending.write_table(TEXTURE_FILE, &rows, &none)?;
+    context.pending.write_rows(TEXTURE, &rows)?;
     let (rows, told) = self_affine(parameters, &names, &correlations);
     warnings.extend(told);
-    context.pending.write_table(SELF_AFFINE_FILE, &rows, &none)?;
+    context.pending.write_rows(SELF_AFFINE, &rows)?;
     let shortest_lag_mm = parameters.self_affine_shortest_lag_mm.unwrap_or(average.spacing * 1e3);
     let (hurst, missing) =
         spectrum::hurst_rows(parameters, &names, &spectra, &rows, reliable, shortest_lag_mm);
-    context.pending.write_table(HURST_FILE, &hurst, &none)?;
+    context.pending.write_rows(HURST, &hurst)?;
     let rows = spectrum::isotropic_rows(&spectrum_rows, &hurst);
-    context.pending.write_table(ISOTROPIC_FILE, &rows, &none)?;
+    context.pending.write_rows(ISOTROPIC, &rows)?;
     let (rows, metadata, apart) =
         spectrum::agreement_rows(&mean_spectrum, &average, reliable, parameters.lags_per_decade);
-    context.pending.write_table(AGREEMENT_FILE, &rows, &metadata)?;
+    context.pending.write_table(AGREEMENT, &rows, &metadata)?;
     warnings.extend(missing.into_iter().chain(apart));
     Ok(warnings)
 }

@@ -123,11 +123,17 @@ impl<'a> Planned<'a> {
         Self { reads: Vec::new(), parameters, inputs: Vec::new(), compute: Box::new(compute) }
     }
 
-    /// With files of other stages that it reads.
+    /// With a file of another stage that it reads.
     #[must_use]
-    pub fn reading(mut self, files: impl IntoIterator<Item = ResultFile>) -> Self {
-        self.reads.extend(files);
+    pub fn reading(mut self, file: impl Into<ResultFile>) -> Self {
+        self.reads.push(file.into());
         self
+    }
+
+    /// The same where the recipe asks for it.
+    #[must_use]
+    pub fn reading_if(self, asked: bool, file: impl Into<ResultFile>) -> Self {
+        if asked { self.reading(file) } else { self }
     }
 
     /// With files from outside that it reads.

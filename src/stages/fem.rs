@@ -4,29 +4,23 @@
 mod curve;
 mod task;
 
-use super::bem::{Bem, CURVES, CURVES_FILE as BEM_CURVES, CurveRow};
+use super::bem::{Bem, CURVES, CurveRow};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::kept::{SolveTask, Tally, unfinished};
 use super::realise::{SURFACES, Surface, read_surfaces};
-use super::{Stage, StageError, Watch, schema_of};
-use crate::artifact::{
-    ArtifactError, Metadata, ResultFile, Row, RunView, SchemaVersion, SolveStore,
-};
+use super::{Stage, StageError};
+use crate::artifact::{ArtifactError, Row, RunView, SchemaVersion, SolveStore, Table};
 use crate::fem::cost::MeshCost;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 pub(crate) use curve::CurveResult as FemCurve;
-use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::sync::atomic::{AtomicU64, Ordering};
-pub use task::Task;
+pub use task::{Sweep, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 9;
-
-/// Friction over contact area, which other stages read.
-pub(crate) const FEM: ResultFile = ResultFile { stage: "fem", file: FEM_FILE };
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -51,7 +45,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(fem, bem, rubber, &inputs.results, &inputs.store()?, context)
     };
-    Some(Planned::new(parameters, run).reading([SURFACES, CURVES]))
+    Some(Planned::new(parameters, run).reading(SURFACES).reading(CURVES))
 }
 
 /// Section `[fem]` of a recipe.
@@ -98,9 +92,9 @@ impl Fem {
 }
 
 /// Friction at the wanted contact areas: `curves.arrow`.
-pub const FEM_FILE: &str = "curves.arrow";
+pub const FEM: Table<FemCurveRow> = Table::new("fem", "curves.arrow");
 /// All solves: `solves.arrow`.
-pub const FEM_SOLVES_FILE: &str = "solves.arrow";
+pub const FEM_SOLVES: Table<FemSolveRow> = Table::new("fem", "solves.arrow");
 
 /// Friction of one realisation at one wanted contact area, at finite deformation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -186,7 +180,7 @@ impl Row for FemSolveRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<FemCurveRow>(), schema_of::<FemSolveRow>()]
+    vec![FEM.schema(), FEM_SOLVES.schema()]
 }
 
 /// Solves the contacts that are not in the store and writes the results; returns warnings.
@@ -203,24 +197,16 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
-    let (half_space, _) = run.read_table::<CurveRow>("bem", BEM_CURVES)?;
+    let half_space = run.rows(CURVES)?;
     let tasks = task::tasks(parameters, bem, &surfaces, &half_space);
-    let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
-    (context.watch.progress)(0, total);
-    let results: Vec<FemCurve> = tasks
-        .par_iter()
-        .map(|task| {
-            context.check_interrupt()?;
-            let result = task.curve(parameters, &bem.area_fractions, rubber, store, context.watch);
-            (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
-            result
-        })
-        .collect::<Result<_, StageError>>()?;
-    let none = Metadata::new();
+    let sweep = Sweep { fem: parameters.clone(), area_fractions: bem.area_fractions.clone() };
+    let solve = |task: &Task| task.solve(&sweep, rubber, store, context.watch);
+    let tally = Tally::new(context.watch);
+    let results: Vec<FemCurve> = tally.side_by_side(&tasks, tasks.len() as u64, solve)?;
     let curves: Vec<_> = results.iter().flat_map(|result| result.rows.iter().cloned()).collect();
-    context.pending.write_table(FEM_FILE, &curves, &none)?;
+    context.pending.write_rows(FEM, &curves)?;
     let solves: Vec<_> = results.iter().flat_map(|result| result.solves.iter().cloned()).collect();
-    context.pending.write_table(FEM_SOLVES_FILE, &solves, &none)?;
+    context.pending.write_rows(FEM_SOLVES, &solves)?;
     Ok(results.into_iter().flat_map(|result| result.warnings).collect())
 }
 
@@ -229,35 +215,14 @@ pub fn run(
 /// # Errors
 /// [`ArtifactError::Io`].
 pub fn missing(
-    parameters: &Fem,
+    sweep: &Sweep,
     bem: &Bem,
     rubber: &Rubber,
     surfaces: &[Surface],
     curves: &[CurveRow],
     store: &SolveStore,
 ) -> Result<Vec<Task>, ArtifactError> {
-    let mut missing = Vec::new();
-    for task in task::tasks(parameters, bem, surfaces, curves) {
-        if !task.is_finished(parameters, &bem.area_fractions, rubber, store)? {
-            missing.push(task);
-        }
-    }
-    Ok(missing)
-}
-
-/// Solves what a packed store does not have of a curve, and returns the curve.
-///
-/// # Errors
-/// As [`Task::solve`].
-pub(crate) fn curve(
-    task: &Task,
-    parameters: &Fem,
-    area_fractions: &[f64],
-    rubber: &Rubber,
-    store: &SolveStore,
-    watch: Watch,
-) -> Result<FemCurve, StageError> {
-    task.curve(parameters, area_fractions, rubber, store, watch)
+    unfinished(task::tasks(&sweep.fem, bem, surfaces, curves), sweep, rubber, store)
 }
 
 /// What a contact of a surface costs.

@@ -8,14 +8,12 @@
 //!
 //! with the local pressures `p_i` of the macro surface under the repulsive law of the microscale.
 
-use super::bem::{CURVES, CURVES_FILE, CurveRow};
+use super::bem::{CURVES, CurveRow};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::micro::{
-    LAW, LAW_FILE, LawRow, Micro, SAMPLES, SAMPLES_FILE, SampleRow, between_samples, law_of,
-};
+use super::micro::{LAW, LawRow, Micro, SAMPLES, SampleRow, between_samples, law_of};
 use super::realise::{SURFACES, Surface, read_surfaces};
-use super::{SolveError, Stage, StageError, schema_of};
-use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
+use super::{SolveError, Stage, StageError};
+use crate::artifact::{Row, RunView, SchemaVersion, Table};
 use crate::multiscale::correction::{CorrectionRule, MeanRule, Microscale, running_mean};
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{
@@ -30,9 +28,6 @@ use serde_json::json;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 5;
-
-/// Corrected friction, which other stages read.
-pub(crate) const HYBRID: ResultFile = ResultFile { stage: "hybrid", file: HYBRID_FILE };
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -52,7 +47,13 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(&hybrid, micro, rubber, &inputs.results, context)
     };
-    Some(Planned::new(parameters, run).reading([SURFACES, CURVES, SAMPLES, LAW]))
+    Some(
+        Planned::new(parameters, run)
+            .reading(SURFACES)
+            .reading(CURVES)
+            .reading(SAMPLES)
+            .reading(LAW),
+    )
 }
 
 /// Section `[hybrid]` of a recipe.
@@ -92,9 +93,9 @@ pub enum RepulsiveLaw {
 }
 
 /// Corrected friction: `curves.arrow`.
-pub const HYBRID_FILE: &str = "curves.arrow";
+pub const HYBRID: Table<HybridRow> = Table::new("hybrid", "curves.arrow");
 /// The local corrections one by one, in the layout of Table 5.3: `local.arrow`.
-pub const LOCAL_FILE: &str = "local.arrow";
+pub const LOCAL: Table<LocalRow> = Table::new("hybrid", "local.arrow");
 
 /// Corrected friction of one realisation at one contact area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -200,7 +201,7 @@ impl Row for LocalRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<HybridRow>(), schema_of::<LocalRow>()]
+    vec![HYBRID.schema(), LOCAL.schema()]
 }
 
 /// What all curves read.
@@ -222,11 +223,8 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
-    let data = Data {
-        curves: run.read_table::<CurveRow>("bem", CURVES_FILE)?.0,
-        samples: run.read_table::<SampleRow>("micro", SAMPLES_FILE)?.0,
-        laws: run.read_table::<LawRow>("micro", LAW_FILE)?.0,
-    };
+    let data =
+        Data { curves: run.rows(CURVES)?, samples: run.rows(SAMPLES)?, laws: run.rows(LAW)? };
     let results: Vec<(Vec<HybridRow>, Vec<LocalRow>)> = surfaces
         .par_iter()
         .map(|surface| {
@@ -236,8 +234,8 @@ pub fn run(
         .collect::<Result<_, StageError>>()?;
     let (rows, locals): (Vec<_>, Vec<_>) = results.into_iter().unzip();
     let (rows, locals): (Vec<HybridRow>, Vec<LocalRow>) = (rows.concat(), locals.concat());
-    context.pending.write_table(HYBRID_FILE, &rows, &Metadata::new())?;
-    context.pending.write_table(LOCAL_FILE, &locals, &Metadata::new())?;
+    context.pending.write_rows(HYBRID, &rows)?;
+    context.pending.write_rows(LOCAL, &locals)?;
     let beyond = rows.iter().filter(|row| row.friction_coefficient.is_none());
     let (unsampled, beyond): (Vec<_>, Vec<_>) =
         beyond.partition(|row| row.largest_sample_mpa == 0.0);
@@ -246,7 +244,7 @@ pub fn run(
     let beyond = (count > 0).then(|| {
         format!(
             "{count} of {of} values have no correction: the local pressure reaches {needed:.3} MPa, \
-             outside the sampled microscale (largest_pressure_mpa and largest_sample_mpa in {HYBRID_FILE})"
+             outside the sampled microscale (largest_pressure_mpa and largest_sample_mpa in {HYBRID})"
         )
     });
     let unsampled = (unsampled > 0).then(|| {
@@ -274,7 +272,7 @@ fn pressed_flat(rows: &[HybridRow]) -> Vec<String> {
         (share > MUCH_BEYOND_FULL_CONTACT).then(|| {
             format!(
                 "{speed} mm/s: up to {:.0} % of the load is on points where the microscale is pressed flat, and its \
-                 correction says least (contact area {}, {} waves; load_beyond_full_contact in {HYBRID_FILE})",
+                 correction says least (contact area {}, {} waves; load_beyond_full_contact in {HYBRID})",
                 100.0 * share,
                 most.contact_area_fraction,
                 most.waves

@@ -6,15 +6,15 @@ mod picture;
 mod warnings;
 
 pub use cleaning::{CLEANING_FILE, cleaning_markdown};
-pub use faults::{FAULTS_FILE, FaultRow};
+pub use faults::{FAULTS, FaultRow};
 pub use picture::fault_picture;
 
 use super::characterise::AVERAGE;
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::{Stage, StageError, schema_of};
+use super::{Stage, StageError};
 use crate::artifact::{
-    ArrayDataset, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest, Digesting,
-    Input, Metadata, ResultFile, Row, RunView, SchemaVersion, Storage,
+    ArrayDataset, ArrayFile, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest,
+    Digesting, Input, ResultFile, Row, RunView, SchemaVersion, Storage, Table,
 };
 use crate::requirement::{InvalidRecipe, require};
 use crate::scans::file::{CHANNELS, Format, Grid, MapLines, is_instrument, open_channel};
@@ -130,19 +130,16 @@ fn is_twelve(pictures: &usize) -> bool {
 }
 
 /// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
-pub const SCANS_FILE: &str = "scans.h5";
-/// The windows, which other stages read.
-pub(crate) const SCANS: ResultFile = ResultFile { stage: "ingest", file: SCANS_FILE };
-/// Schema name of [`SCANS_FILE`].
-pub const SCANS_SCHEMA: &str = "asperity.ingest.scans";
-/// Schema version of [`SCANS_FILE`].
-pub const SCANS_VERSION: u32 = 1;
-const SCANS_DESCRIPTION: &str =
-    "line scans on equal spacing, form removed; NaN where a height is missing";
+pub const SCANS: ArrayFile = ArrayFile {
+    file: ResultFile { stage: "ingest", name: "scans.h5" },
+    schema: "asperity.ingest.scans",
+    version: 1,
+    description: "line scans on equal spacing, form removed; NaN where a height is missing",
+};
 /// What conditioning did to each scan file: `report.arrow`.
-pub const REPORT_FILE: &str = "report.arrow";
+pub const REPORT: Table<ScanReportRow> = Table::new("ingest", "report.arrow");
 /// What became of each window: `windows.arrow`.
-pub const WINDOWS_FILE: &str = "windows.arrow";
+pub const WINDOWS: Table<WindowRow> = Table::new("ingest", "windows.arrow");
 
 /// What conditioning did to one scan file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -206,17 +203,16 @@ impl Row for WindowRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    let scans = SchemaVersion { schema: SCANS_SCHEMA.into(), version: SCANS_VERSION };
-    vec![scans, schema_of::<ScanReportRow>(), schema_of::<FaultRow>(), schema_of::<WindowRow>()]
+    vec![SCANS.schema(), REPORT.schema(), FAULTS.schema(), WINDOWS.schema()]
 }
 
-/// What [`SCANS_FILE`] holds.
+/// What [`SCANS`] holds.
 pub fn scans_schema() -> ArraysSchema {
     let attribute = |name, kind, description| AttributeSchema { name, kind, description };
     ArraysSchema {
-        schema: SCANS_SCHEMA,
-        version: SCANS_VERSION,
-        description: SCANS_DESCRIPTION,
+        schema: SCANS.schema,
+        version: SCANS.version,
+        description: SCANS.description,
         datasets: vec![DatasetSchema {
             path: "{window}",
             unit: "m",
@@ -383,15 +379,13 @@ pub fn run(
     }
     let reports: Vec<&ConditioningReport> = reports.iter().collect();
     let pending = &mut context.pending;
-    let (schema, description) = (SCANS_SCHEMA, SCANS_DESCRIPTION);
-    let storage = Storage::Plain;
-    pending.write_arrays(SCANS_FILE, schema, SCANS_VERSION, description, storage, &datasets)?;
+    pending.write_arrays(SCANS, Storage::Plain, &datasets)?;
     let scans: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
-    pending.write_table(REPORT_FILE, &scans, &Metadata::new())?;
+    pending.write_rows(REPORT, &scans)?;
     let faults: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
-    pending.write_table(FAULTS_FILE, &faults, &Metadata::new())?;
+    pending.write_rows(FAULTS, &faults)?;
     let windows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
-    pending.write_table(WINDOWS_FILE, &windows, &Metadata::new())?;
+    pending.write_rows(WINDOWS, &windows)?;
     let pictures = write_pictures(&reports, ingest.fault_pictures, pending)?;
     let document = cleaning_markdown(&scans, &faults, &windows, &pictures);
     pending.write_document(CLEANING_FILE, &document)?;
@@ -578,7 +572,7 @@ fn dataset(window: LineScan, file: &ScanFile) -> ArrayDataset {
 /// # Errors
 /// Those of the store.
 pub fn read_windows(run: &RunView) -> Result<Vec<LineScan>, StageError> {
-    let datasets = run.read_arrays("ingest", SCANS_FILE, SCANS_SCHEMA, SCANS_VERSION)?;
+    let datasets = run.read_arrays(SCANS)?;
     let float = |dataset: &ArrayDataset, name: &str| match dataset.attributes.get(name) {
         Some(Attribute::Float(value)) => *value,
         // The schema version promises the attribute.

@@ -5,11 +5,12 @@ mod curve;
 mod monotony;
 mod task;
 
-use super::bem::{CURVES, CURVES_FILE, CurveRow};
+use super::bem::{CURVES, CurveRow};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
+use super::kept::{SolveTask, Tally, unfinished};
 use super::realise::{SURFACES, Surface, read_surfaces};
-use super::{Stage, StageError, schema_of};
-use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion, SolveStore};
+use super::{Stage, StageError};
+use crate::artifact::{Row, RunView, SchemaVersion, SolveStore, Table};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::multiscale::correction::Microscale;
@@ -17,21 +18,14 @@ use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use crate::surface::{Wave, wave};
 pub(crate) use curve::law_of;
-use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::sync::atomic::{AtomicU64, Ordering};
 pub(crate) use task::is_of;
 pub use task::{Owner, PressedSurface, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 7;
-
-/// The samples, which other stages read.
-pub(crate) const SAMPLES: ResultFile = ResultFile { stage: "micro", file: SAMPLES_FILE };
-/// The repulsive law, which other stages read.
-pub(crate) const LAW: ResultFile = ResultFile { stage: "micro", file: LAW_FILE };
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -51,7 +45,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(micro, rubber, &inputs.results, &inputs.store()?, context)
     };
-    Some(Planned::new(parameters, run).reading([SURFACES, CURVES]))
+    Some(Planned::new(parameters, run).reading(SURFACES).reading(CURVES))
 }
 
 /// Section `[micro]` of a recipe.
@@ -123,7 +117,7 @@ impl Micro {
 }
 
 /// The sampled microscale: `samples.arrow`.
-pub const SAMPLES_FILE: &str = "samples.arrow";
+pub const SAMPLES: Table<SampleRow> = Table::new("micro", "samples.arrow");
 
 /// The microscale at one mean pressure, under both models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -183,7 +177,7 @@ impl Row for SampleRow {
 }
 
 /// The repulsive law of the half-space: `law.arrow`.
-pub const LAW_FILE: &str = "law.arrow";
+pub const LAW: Table<LawRow> = Table::new("micro", "law.arrow");
 
 /// Mean separation of the microscale on the half-space at one mean pressure; the last one of a
 /// curve is full contact.
@@ -214,7 +208,7 @@ impl Row for LawRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<SampleRow>(), schema_of::<LawRow>()]
+    vec![SAMPLES.schema(), LAW.schema()]
 }
 
 /// Samples the microscales over the pressures that the macro contacts ask for; returns warnings.
@@ -230,31 +224,22 @@ pub fn run(
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
-    let (curves, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
+    let curves = run.rows(CURVES)?;
     let tasks = task::tasks(parameters, &surfaces, &curves)?;
-    let (done, total) = (AtomicU64::new(0), tasks.len() as u64);
-    (context.watch.progress)(0, total);
-    let results: Vec<TaskResult> = tasks
-        .par_iter()
-        .map(|task| {
-            context.check_interrupt()?;
-            let result = task.sample(parameters, rubber, store, context.watch)?;
-            (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
-            Ok(result)
-        })
-        .collect::<Result<_, StageError>>()?;
+    let sample = |task: &Task| task.solve(parameters, rubber, store, context.watch);
+    let tally = Tally::new(context.watch);
+    let results = tally.side_by_side(&tasks, tasks.len() as u64, sample)?;
     if let Some(reason) = results.iter().find_map(|result| result.warnings.first().cloned())
         && results.iter().all(|result| result.samples.is_empty())
     {
         return Err(StageError::NoMicroscale { reason });
     }
-    let none = Metadata::new();
     let results: Vec<TaskResult> =
         tasks.iter().zip(results).map(|(task, result)| result.owned_by(&task.owners)).collect();
     let samples: Vec<_> = results.iter().flat_map(|r| r.samples.iter().cloned()).collect();
-    context.pending.write_table(SAMPLES_FILE, &samples, &none)?;
+    context.pending.write_rows(SAMPLES, &samples)?;
     let laws: Vec<_> = results.iter().flat_map(|r| r.law.iter().cloned()).collect();
-    context.pending.write_table(LAW_FILE, &laws, &none)?;
+    context.pending.write_rows(LAW, &laws)?;
     let mut warnings: Vec<String> = results.into_iter().flat_map(|r| r.warnings).collect();
     if tasks.is_empty() {
         warnings.push(format!(
@@ -291,14 +276,8 @@ pub fn missing(
     curves: &[CurveRow],
     store: &SolveStore,
 ) -> Result<Vec<Task>, StageError> {
-    let mut missing = task::tasks(parameters, surfaces, curves)?;
-    let mut finished = Vec::with_capacity(missing.len());
-    for task in &missing {
-        finished.push(task.is_finished(parameters, rubber, store)?);
-    }
-    let mut finished = finished.into_iter();
-    missing.retain(|_| !finished.next().unwrap_or(false));
-    Ok(missing)
+    let tasks = task::tasks(parameters, surfaces, curves)?;
+    Ok(unfinished(tasks, parameters, rubber, store)?)
 }
 
 /// Relative difference of two amplitudes, or phase difference, that is but round-off: fits of eight
@@ -315,7 +294,7 @@ pub(crate) fn same_waves(left: &[Wave], right: &[Wave]) -> bool {
     left.len() == right.len() && left.iter().zip(right).all(same)
 }
 
-struct TaskResult {
+pub(crate) struct TaskResult {
     samples: Vec<SampleRow>,
     law: Vec<LawRow>,
     warnings: Vec<String>,

@@ -20,13 +20,14 @@ pub mod contract;
 pub mod fem;
 pub mod hybrid;
 pub mod ingest;
+pub(crate) mod kept;
 pub mod micro;
 pub mod multilevel;
 pub mod realise;
 pub mod sinusoid;
 pub mod tables;
 
-use crate::artifact::{ArtifactError, SchemaVersion};
+use crate::artifact::ArtifactError;
 use crate::contact::ContactError;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
@@ -74,11 +75,6 @@ impl Watch<'_> {
         }
         Ok(())
     }
-}
-
-/// Schema and version of a row type, for the identity of a result.
-pub fn schema_of<R: crate::artifact::Row>() -> SchemaVersion {
-    SchemaVersion { schema: R::SCHEMA.into(), version: R::VERSION }
 }
 
 /// Why a stage has no result.

@@ -13,21 +13,18 @@ mod rows;
 mod shares;
 mod work;
 
-use super::bem::{Bem, CURVES, CURVES_FILE as BEM_CURVES, CurveRow, SOLVES, SOLVES_FILE, SolveRow};
+use super::bem::{Bem, CURVES, CurveRow, SOLVES, SolveRow};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::fem::Fem;
+use super::fem::{Fem, Sweep};
 use super::realise::{SURFACES, Surface, read_surfaces};
 use super::{Stage, StageError, Watch};
-use crate::artifact::{Metadata, ResultFile, RunView, SolveStore};
+use crate::artifact::{RunView, SolveStore};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 pub(crate) use bound::is_negligible;
 use ensemble::Ensemble;
 pub use estimate::Estimate;
-pub use rows::{
-    AVERAGES_FILE, AverageRow, FURTHER_FILE, PAIRS_FILE, PairRow, SOLVES_FILE as FEM_SOLVES_FILE,
-    schemas,
-};
+pub use rows::{AVERAGES, AverageRow, FURTHER, PAIRS, PairRow, SOLVES as FEM_SOLVES, schemas};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -36,12 +33,6 @@ use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 3;
-
-/// The averages and the pairs that they are of, which other stages read.
-pub(crate) const RESULTS: [ResultFile; 2] = [
-    ResultFile { stage: "multilevel", file: AVERAGES_FILE },
-    ResultFile { stage: "multilevel", file: PAIRS_FILE },
-];
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -61,7 +52,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(multilevel, bem, rubber, &inputs.results, &inputs.store()?, context)
     };
-    Some(Planned::new(parameters, run).reading([SURFACES, CURVES, SOLVES]))
+    Some(Planned::new(parameters, run).reading(SURFACES).reading(CURVES).reading(SOLVES))
 }
 
 /// Section `[multilevel]` of a recipe.
@@ -119,6 +110,11 @@ impl Multilevel {
             estimate_mesh_error: self.estimate_mesh_error,
         }
     }
+
+    /// The same with the areas of the half-space.
+    pub(crate) fn sweep(&self, bem: &Bem) -> Sweep {
+        Sweep { fem: self.fem(), area_fractions: bem.area_fractions.clone() }
+    }
 }
 
 /// Solves what is not in the store and writes the results; returns warnings.
@@ -142,15 +138,14 @@ pub fn run(
     let mut ensembles = ensembles(parameters, bem, &surfaces, &half_space);
     let work = Work::new(parameters, bem, rubber, store, context.watch);
     work.solve_all(&mut ensembles)?;
-    let none = Metadata::new();
     let averages: Vec<AverageRow> = ensembles.iter().flat_map(Ensemble::averages).collect();
-    context.pending.write_table(AVERAGES_FILE, &averages, &none)?;
+    context.pending.write_rows(AVERAGES, &averages)?;
     let pairs: Vec<PairRow> = ensembles.iter().flat_map(Ensemble::pairs).collect();
-    context.pending.write_table(PAIRS_FILE, &pairs, &none)?;
+    context.pending.write_rows(PAIRS, &pairs)?;
     let further: Vec<CurveRow> = ensembles.iter().flat_map(Ensemble::further).cloned().collect();
-    context.pending.write_table(FURTHER_FILE, &further, &none)?;
+    context.pending.write_rows(FURTHER, &further)?;
     let solves: Vec<_> = ensembles.iter().flat_map(Ensemble::solves).cloned().collect();
-    context.pending.write_table(FEM_SOLVES_FILE, &solves, &none)?;
+    context.pending.write_rows(FEM_SOLVES, &solves)?;
     Ok(ensembles.iter().flat_map(Ensemble::warnings).collect())
 }
 
@@ -180,10 +175,7 @@ struct HalfSpace {
 
 impl HalfSpace {
     fn read(run: &RunView) -> Result<Self, StageError> {
-        Ok(Self {
-            curves: run.read_table::<CurveRow>("bem", BEM_CURVES)?.0,
-            solves: run.read_table::<SolveRow>("bem", SOLVES_FILE)?.0,
-        })
+        Ok(Self { curves: run.rows(CURVES)?, solves: run.rows(SOLVES)? })
     }
 }
 

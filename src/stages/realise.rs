@@ -1,9 +1,9 @@
 //! realise: surfaces of the fitted waves with random phases.
 
-use super::approximate::{ScaleRow, WAVES_FILE};
+use super::approximate::{ScaleRow, WAVES};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::{Stage, StageError, schema_of};
-use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
+use super::{Stage, StageError};
+use crate::artifact::{Row, RunView, SchemaVersion, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::realisation::random_phases;
 use crate::surface::{SineScale, Wave};
@@ -13,9 +13,6 @@ use serde_json::json;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 2;
-
-/// The surfaces, which other stages read.
-pub(crate) const SURFACES: ResultFile = ResultFile { stage: "realise", file: SURFACES_FILE };
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -31,7 +28,7 @@ static CONTRACT: Contract = Contract {
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let chain = request.chain()?;
     let run = |inputs: &Inputs, context: &mut Context| run(chain.realise, &inputs.results, context);
-    Some(Planned::new(json!(chain.realise), run).reading([super::approximate::WAVES]))
+    Some(Planned::new(json!(chain.realise), run).reading(super::approximate::WAVES))
 }
 
 /// Section `[realise]` of a recipe.
@@ -81,7 +78,7 @@ impl Realise {
 pub(crate) const MOST_REALISATIONS: u32 = 1000;
 
 /// The realised waves: `surfaces.arrow`.
-pub const SURFACES_FILE: &str = "surfaces.arrow";
+pub const SURFACES: Table<SurfaceRow> = Table::new("realise", "surfaces.arrow");
 
 /// One wave `D sin(2 π x / λ + φ)` of a realised surface. SI units, so that the surface reads back
 /// to the last bit.
@@ -111,7 +108,7 @@ impl Row for SurfaceRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<SurfaceRow>()]
+    vec![SURFACES.schema()]
 }
 
 /// Draws the phases and writes the surfaces; returns warnings.
@@ -126,7 +123,7 @@ pub fn run(
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let (fitted, _) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
+    let fitted = run.rows(WAVES)?;
     let seed = parameters.seed.unwrap_or_default();
     let (mut rows, mut realised, mut warnings) = (Vec::new(), Vec::<u32>::new(), Vec::new());
     for &waves in &parameters.waves {
@@ -154,7 +151,7 @@ pub fn run(
             }));
         }
     }
-    context.pending.write_table(SURFACES_FILE, &rows, &Metadata::new())?;
+    context.pending.write_rows(SURFACES, &rows)?;
     Ok(warnings)
 }
 
@@ -197,6 +194,12 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// What is solved on it, for messages: `bem, 8 waves, realisation 3, 10 mm/s`.
+    pub(crate) fn name_at(&self, stage: &str, speed_mm_s: f64) -> String {
+        let Self { waves, realisation, .. } = self;
+        format!("{stage}, {waves} waves, realisation {realisation}, {speed_mm_s} mm/s")
+    }
+
     /// The period in m: the longest wavelength with an amplitude if it is a multiple of all others that
     /// have one, else the longest of all, which always is. A wave without amplitude needs no room.
     pub fn period(&self) -> f64 {
@@ -221,7 +224,7 @@ impl Surface {
 /// # Errors
 /// Those of the store.
 pub fn read_surfaces(run: &RunView) -> Result<Vec<Surface>, StageError> {
-    let (rows, _) = run.read_table::<SurfaceRow>("realise", SURFACES_FILE)?;
+    let rows = run.rows(SURFACES)?;
     let same =
         |a: &SurfaceRow, b: &SurfaceRow| (a.waves, a.realisation) == (b.waves, b.realisation);
     let surface = |rows: &[SurfaceRow]| Surface {

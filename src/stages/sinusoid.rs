@@ -16,18 +16,17 @@ pub use problem::Model;
 pub use rows::{AgreementRow, AsymptoteRow, FieldRow, PeakRow, PointRow};
 
 use super::contract::{Context, Contract, Inputs, Job, Planned, Request};
-use super::{Stage, StageError, schema_of};
-use crate::artifact::{Metadata, SchemaVersion, SolveStore};
+use super::kept::Tally;
+use super::{Stage, StageError};
+use crate::artifact::{SchemaVersion, SolveStore, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{Rubber, RubberData, read_rubber};
 use points::{Case, Scale};
-use problem::Outcome;
-use rayon::prelude::*;
+use problem::{Outcome, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 5;
@@ -209,27 +208,21 @@ pub fn rubber(parameters: &Sinusoid) -> Result<Rubber, StageError> {
 }
 
 /// Friction, contact area and separation against speed: `points.arrow`.
-pub const POINTS_FILE: &str = "points.arrow";
+pub const POINTS: Table<PointRow> = Table::new("sinusoid", "points.arrow");
 /// The same against pressure, where the recipe asks for it: `pressures.arrow`.
-pub const PRESSURES_FILE: &str = "pressures.arrow";
+pub const PRESSURES: Table<PointRow> = Table::new("sinusoid", "pressures.arrow");
 /// Elastic limits of slow and fast sliding: `asymptotes.arrow`.
-pub const ASYMPTOTES_FILE: &str = "asymptotes.arrow";
+pub const ASYMPTOTES: Table<AsymptoteRow> = Table::new("sinusoid", "asymptotes.arrow");
 /// Pressure and separation, where the recipe asks for them: `fields.arrow`.
-pub const FIELDS_FILE: &str = "fields.arrow";
+pub const FIELDS: Table<FieldRow> = Table::new("sinusoid", "fields.arrow");
 /// The maximum of friction over speed: `peaks.arrow`.
-pub const PEAKS_FILE: &str = "peaks.arrow";
+pub const PEAKS: Table<PeakRow> = Table::new("sinusoid", "peaks.arrow");
 /// How far the models agree with the neo-Hookean one: `agreement.arrow`.
-pub const AGREEMENT_FILE: &str = "agreement.arrow";
+pub const AGREEMENT: Table<AgreementRow> = Table::new("sinusoid", "agreement.arrow");
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![
-        schema_of::<PointRow>(),
-        schema_of::<AsymptoteRow>(),
-        schema_of::<FieldRow>(),
-        schema_of::<PeakRow>(),
-        schema_of::<AgreementRow>(),
-    ]
+    vec![POINTS.schema(), ASYMPTOTES.schema(), FIELDS.schema(), PEAKS.schema(), AGREEMENT.schema()]
 }
 
 /// Solves what is not in the store and writes the tables; returns warnings.
@@ -257,21 +250,20 @@ pub fn run(
     let asymptotes = points::asymptotes(parameters, rubber);
     let peaks = conclusions::peaks(&points);
     let agreement = conclusions::agreement(&points, &parameters.agreement_levels);
-    let none = Metadata::new();
     let pending = &mut context.pending;
-    pending.write_table(POINTS_FILE, &points, &none)?;
-    pending.write_table(ASYMPTOTES_FILE, &asymptotes, &none)?;
-    pending.write_table(PEAKS_FILE, &peaks, &none)?;
-    pending.write_table(AGREEMENT_FILE, &agreement, &none)?;
+    pending.write_rows(POINTS, &points)?;
+    pending.write_rows(ASYMPTOTES, &asymptotes)?;
+    pending.write_rows(PEAKS, &peaks)?;
+    pending.write_rows(AGREEMENT, &agreement)?;
     if parameters.fields.is_some() {
         let fields = points::fields(&sweep, swept, &scale);
-        pending.write_table(FIELDS_FILE, &fields, &none)?;
+        pending.write_rows(FIELDS, &fields)?;
     }
     let mut warnings = RubberData::from(rubber.clone()).oddities();
     warnings.extend(warning("the sweep", &points));
     if parameters.pressure_dependence.is_some() {
         let rows = points::rows(&pressures, pressed, &scale);
-        pending.write_table(PRESSURES_FILE, &rows, &none)?;
+        pending.write_rows(PRESSURES, &rows)?;
         warnings.extend(warning("the dependence on pressure", &rows));
     }
     Ok(warnings)
@@ -286,20 +278,18 @@ fn solve_all(
     store: &SolveStore,
     context: &Context,
 ) -> Result<Vec<TwoMeshes>, StageError> {
-    let done = AtomicU64::new(0);
-    let total = 2 * cases.len() as u64;
-    (context.watch.progress)(0, total);
-    let solve = |problem: &problem::Problem| {
-        context.check_interrupt()?;
-        let outcomes =
-            problem.outcomes(rubber, store, context.watch.interrupted).map_err(|error| {
-                let problem = problem.to_string();
-                error.in_stage(|source| StageError::Solve { problem, source })
-            })?;
-        (context.watch.progress)(1 + done.fetch_add(1, Ordering::Relaxed), total);
-        Ok::<_, StageError>(outcomes)
+    let solve = |problem: &&Problem| {
+        problem.outcomes(rubber, store, context.watch.interrupted).map_err(|error| {
+            let problem = problem.to_string();
+            error.in_stage(|source| StageError::Solve { problem, source })
+        })
     };
-    cases.par_iter().map(|case| Ok([solve(&case.finer)?, solve(&case.coarser)?])).collect()
+    let problems: Vec<&Problem> =
+        cases.iter().flat_map(|case| [&case.finer, &case.coarser]).collect();
+    let tally = Tally::new(context.watch);
+    let outcomes = tally.side_by_side(&problems, problems.len() as u64, solve)?;
+    let mut outcomes = outcomes.into_iter();
+    Ok(std::iter::from_fn(|| Some([outcomes.next()?, outcomes.next()?])).collect())
 }
 
 /// How many points have no solution, if any.

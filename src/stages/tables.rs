@@ -7,22 +7,22 @@ mod multilevel;
 mod published;
 mod theories;
 
-use super::approximate::{ScaleRow, WAVES_FILE};
-use super::bem::{CURVES_FILE, CurveRow};
+use super::approximate::WAVES;
+use super::bem::{CURVES, CurveRow};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::fem::{FEM_FILE, FemCurveRow};
-use super::hybrid::{HYBRID_FILE, Hybrid, HybridRow};
-use super::{Stage, StageError, schema_of};
-use crate::artifact::{Metadata, Row, RunView, SchemaVersion};
+use super::fem::{self, FemCurveRow};
+use super::hybrid::{self, Hybrid, HybridRow};
+use super::{Stage, StageError};
+use crate::artifact::{Row, RunView, SchemaVersion, Table};
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use accuracy::missed;
 use models::comparisons;
-pub use models::{MODELS_FILE, ModelRow};
+pub use models::{MODELS, ModelRow};
 pub use published::{
-    COMPARISON_FILE, CORRECTIONS_FILE, ComparisonRow, CorrectionRow, NOTE_KEY, Published,
+    COMPARISON, CORRECTIONS, ComparisonRow, CorrectionRow, NOTE_KEY, Published,
     PublishedCorrections, inputs,
 };
 use schemars::JsonSchema;
@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
 use theories::predictions;
-pub use theories::{THEORIES_FILE, Theory, TheoryConstants, TheoryRow};
+pub use theories::{THEORIES, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 8;
@@ -72,12 +72,14 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         run(tables, models, rubber, &inputs.results, context)
     };
     let planned = Planned::new(parameters, run)
-        .reading([super::bem::CURVES, super::approximate::WAVES])
-        .reading(chain.micro.map(|_| super::hybrid::HYBRID))
-        .reading(chain.fem.map(|_| super::fem::FEM))
-        .reading(chain.multilevel.map(|_| super::multilevel::RESULTS).into_iter().flatten())
-        .reading((!tables.theories.is_empty()).then_some(super::realise::SURFACES))
-        .reading((!tables.published_corrections.is_empty()).then_some(super::micro::SAMPLES));
+        .reading(super::bem::CURVES)
+        .reading(super::approximate::WAVES)
+        .reading_if(chain.micro.is_some(), super::hybrid::HYBRID)
+        .reading_if(chain.fem.is_some(), super::fem::FEM)
+        .reading_if(chain.multilevel.is_some(), super::multilevel::AVERAGES)
+        .reading_if(chain.multilevel.is_some(), super::multilevel::PAIRS)
+        .reading_if(!tables.theories.is_empty(), super::realise::SURFACES)
+        .reading_if(!tables.published_corrections.is_empty(), super::micro::SAMPLES);
     Some(planned.with_inputs(request.published.clone()))
 }
 
@@ -178,7 +180,7 @@ pub struct Corrected {
 }
 
 /// The averaged friction: `friction.arrow`.
-pub const FRICTION_FILE: &str = "friction.arrow";
+pub const FRICTION: Table<FrictionRow> = Table::new("tables", "friction.arrow");
 
 /// Friction at one contact area: each realisation and their average.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -250,11 +252,11 @@ impl Row for FrictionRow {
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     vec![
-        schema_of::<FrictionRow>(),
-        schema_of::<ComparisonRow>(),
-        schema_of::<CorrectionRow>(),
-        schema_of::<ModelRow>(),
-        schema_of::<TheoryRow>(),
+        FRICTION.schema(),
+        COMPARISON.schema(),
+        CORRECTIONS.schema(),
+        MODELS.schema(),
+        THEORIES.schema(),
     ]
 }
 
@@ -269,17 +271,17 @@ pub fn run(
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let (fitted, metadata) = run.read_table::<ScaleRow>("approximate", WAVES_FILE)?;
-    let (half_space, _) = run.read_table::<CurveRow>("bem", CURVES_FILE)?;
+    let (fitted, metadata) = run.read_table(WAVES)?;
+    let half_space = run.rows(CURVES)?;
     let bem: Vec<Value> = half_space.iter().cloned().map(Value::from).collect();
     let mut rows = average(BEM, bem.clone());
     if models.hybrid.is_some() {
-        let (hybrid, _) = run.read_table::<HybridRow>("hybrid", HYBRID_FILE)?;
+        let hybrid = run.rows(hybrid::HYBRID)?;
         let values = hybrid.iter().filter_map(value_of).collect();
         rows.extend(average(HYBRID, complete(values, &bem)));
     }
     if models.fem {
-        let (fem, _) = run.read_table::<FemCurveRow>("fem", FEM_FILE)?;
+        let fem = run.rows(fem::FEM)?;
         let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
         rows.extend(average(FEM, complete(values, &bem)));
     }
@@ -296,14 +298,14 @@ pub fn run(
         for of_one in predictions.chunk_by(|a, b| a.model == b.model) {
             rows.extend(average(&of_one[0].model, of_one.iter().map(Value::from).collect()));
         }
-        context.pending.write_table(THEORIES_FILE, &predictions, &Metadata::new())?;
+        context.pending.write_rows(THEORIES, &predictions)?;
     }
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
-    context.pending.write_table(FRICTION_FILE, &rows, &Metadata::new())?;
+    context.pending.write_rows(FRICTION, &rows)?;
     if models.hybrid.is_some() || models.fem || models.multilevel || !theories.is_empty() {
-        context.pending.write_table(MODELS_FILE, &comparisons(&rows), &Metadata::new())?;
+        context.pending.write_rows(MODELS, &comparisons(&rows))?;
     }
     published::write(parameters, &rows, &fitted, run, context)?;
     Ok(warnings)

@@ -4,17 +4,17 @@ use super::layout::{Layout, RECIPE_FILE};
 use super::plan::{PlannedTask, ShardTasks, SweepPlan, Wanted};
 use super::prepare::{of_case, scan_digests, scans};
 use super::slurm::shell_path;
-use super::table::{FRICTION_FILE, SweepFrictionRow};
+use super::table::{FRICTION, SweepFrictionRow};
 use super::{Prepared, STAGE, SweepError};
 use crate::artifact::{
-    ArtifactError, Digest, Identity, Input, Manifest, Metadata, RunFolder, RunView, SolveStore,
-    TOOL_VERSION, write_by_rename,
+    ArtifactError, Digest, Identity, Input, Manifest, RunFolder, RunView, SolveStore, TOOL_VERSION,
+    write_by_rename,
 };
 use crate::pipeline::{self, Selection};
 use crate::recipe::{Case, Recipe};
 use crate::stages;
-use crate::stages::tables::{self, FrictionRow};
-use crate::stages::{Watch, schema_of};
+use crate::stages::Watch;
+use crate::stages::tables::{self};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -254,13 +254,13 @@ fn finish(
     let identity = Identity {
         stage: STAGE.to_owned(),
         stage_revision: REVISION,
-        output_schemas: vec![schema_of::<SweepFrictionRow>()],
+        output_schemas: vec![FRICTION.schema()],
         parameters: json!({ "tolerance": prepared.cases[0].recipe.tolerance }),
         inputs,
     };
     let folder = RunFolder::share(prepared.layout.out())?;
     let mut pending = folder.begin(STAGE)?;
-    pending.write_table(FRICTION_FILE, &rows.concat(), &Metadata::new())?;
+    pending.write_rows(FRICTION, &rows.concat())?;
     let seconds = begin.elapsed().as_secs_f64();
     let name = |number: &usize| prepared.cases[*number].folder.display().to_string();
     let warnings =
@@ -285,9 +285,9 @@ fn one_case(
         .map_err(of_case(case))?;
     let view = RunView::of(folder);
     let name = stages::tables::STAGE.name();
-    let (rows, _) = view.read_table::<FrictionRow>(name, tables::FRICTION_FILE)?;
+    let rows = view.rows(tables::FRICTION)?;
     let manifest = view.stage_manifest(name)?;
-    let input = manifest.and_then(|manifest| manifest.input(tables::FRICTION_FILE));
+    let input = manifest.and_then(|manifest| manifest.input(tables::FRICTION.name()));
     let input = input
         .map(|input| Input { name: format!("{}/{}", case.folder.display(), input.name), ..input });
     let input = input.ok_or_else(|| ArtifactError::NoResult {

@@ -12,6 +12,7 @@ use crate::fem::cost::{MeshCost, solves_of_curve};
 use crate::recipe::Case;
 use crate::stages::bem::{self, SolveRow};
 use crate::stages::fem::{self, Fem};
+use crate::stages::kept::SolveTask;
 use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -79,7 +80,7 @@ impl<'a> Costs<'a> {
                 let there = task.is_finished(&solvers.bem, rubber, store)?;
                 let start = Instant::now();
                 match task.solve(&solvers.bem, rubber, store, watch) {
-                    Ok(rows) => Ok(Some((rows, start.elapsed().as_secs_f64(), there))),
+                    Ok(curve) => Ok(Some((curve.solves, start.elapsed().as_secs_f64(), there))),
                     // The shard that gets it says so.
                     Err(StageError::Contact { .. }) => Ok(None),
                     Err(error) => Err(error.into()),
@@ -128,8 +129,8 @@ impl<'a> Costs<'a> {
                 let mesh = task.cost(&self.solvers.micro);
                 finite(mesh, mesh.seconds_pressed_to(most))
             }
-            Task::Fem(task) => self.all_waves(task, &self.solvers.fem),
-            Task::Multilevel(task) => self.all_waves(task, &self.solvers.multilevel.fem()),
+            Task::Fem(task) => self.all_waves(task, &self.solvers.fem.fem),
+            Task::Multilevel(task) => self.all_waves(task, &self.solvers.pairs.fem),
         }
     }
 

@@ -30,7 +30,7 @@ pub use layout::{CASES_FOLDER, Layout, RECIPE_FILE, SURFACES_FOLDER};
 pub use plan::{PlannedShard, PlannedTask, ShardTasks, SweepPlan, plan, read_plan};
 pub use prepare::Prepared;
 pub use shard::{ShardReport, run_shard};
-pub use table::{FRICTION_FILE, SweepFrictionRow};
+pub use table::{FRICTION, SweepFrictionRow};
 pub use task::{Solvers, Task};
 
 use crate::artifact::ArtifactError;

@@ -8,7 +8,7 @@ use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Case, Recipe};
 use crate::rubber::{Rubber, RubberData};
 use crate::stages;
-use crate::stages::bem::{self, CURVES_FILE, CurveRow};
+use crate::stages::bem::{self, CURVES};
 use crate::stages::ingest::{ScanFile, find_scans};
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Stage, StageError, Watch, fem, micro, multilevel};
@@ -173,7 +173,7 @@ impl Prepared {
         let folder = self.make_case(case)?;
         self.run_stage(case, folder.clone(), stages::bem::STAGE, watch)?;
         let view = RunView::of(folder);
-        let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE)?;
+        let curves = view.rows(CURVES)?;
         let mut tasks = Vec::new();
         if micro {
             let missing = micro::missing(&solvers.micro, rubber, surfaces, &curves, store)?;

@@ -1,13 +1,13 @@
 //! The tables of all cases in one, keyed by what the sweep lists.
 
-use crate::artifact::Row;
+use crate::artifact::{Row, Table};
 use crate::recipe::Case;
 use crate::stages::tables::FrictionRow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The tables of all cases: `friction.arrow`.
-pub const FRICTION_FILE: &str = "friction.arrow";
+pub const FRICTION: Table<SweepFrictionRow> = Table::new("sweep", "friction.arrow");
 
 /// Averaged friction of one case at one contact area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -88,7 +88,7 @@ mod tests {
             friction,
         };
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(FRICTION_FILE);
+        let path = folder.path().join(FRICTION.name());
         write_table(&path, std::slice::from_ref(&row), &Metadata::new()).unwrap();
         assert_eq!(read_table::<SweepFrictionRow>(&path).unwrap().0, [row]);
     }

@@ -5,7 +5,8 @@ use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages::bem::{self, Bem};
-use crate::stages::fem::{self, Fem};
+use crate::stages::fem;
+use crate::stages::kept::SolveTask;
 use crate::stages::micro::{self, Micro};
 use crate::stages::multilevel::Multilevel;
 use crate::stages::{Chain, Job};
@@ -33,10 +34,12 @@ pub struct Solvers {
     pub bem: Bem,
     /// Section `[micro]`.
     pub micro: Micro,
-    /// Section `[fem]`.
-    pub fem: Fem,
+    /// Section `[fem]` with the areas of the half-space.
+    pub fem: fem::Sweep,
     /// Section `[multilevel]`.
     pub multilevel: Multilevel,
+    /// What it says about curves at finite deformation.
+    pub pairs: fem::Sweep,
 }
 
 impl Solvers {
@@ -46,12 +49,17 @@ impl Solvers {
     /// [`InvalidRecipe`] for the study of one sine.
     pub fn of(case: &Recipe) -> Result<Self, InvalidRecipe> {
         match case.job()? {
-            Job::Chain(Chain { bem, micro, fem, multilevel, .. }) => Ok(Self {
-                bem: bem.clone(),
-                micro: micro.cloned().unwrap_or_default(),
-                fem: fem.cloned().unwrap_or_default(),
-                multilevel: multilevel.copied().unwrap_or_default(),
-            }),
+            Job::Chain(Chain { bem, micro, fem, multilevel, .. }) => {
+                let multilevel = multilevel.copied().unwrap_or_default();
+                let area_fractions = bem.area_fractions.clone();
+                Ok(Self {
+                    bem: bem.clone(),
+                    micro: micro.cloned().unwrap_or_default(),
+                    fem: fem::Sweep { fem: fem.cloned().unwrap_or_default(), area_fractions },
+                    multilevel,
+                    pairs: multilevel.sweep(bem),
+                })
+            }
             Job::Sinusoid(_) => Err(InvalidRecipe::SweepOfSinusoid),
         }
     }
@@ -61,10 +69,10 @@ impl Task {
     /// Digest under which its solves are kept; tasks of one problem belong into one shard.
     pub fn problem(&self, solvers: &Solvers, rubber: &Rubber) -> Digest {
         match self {
-            Self::Bem(task) => task.problem(rubber),
+            Self::Bem(task) => task.problem(&solvers.bem, rubber),
             Self::Micro(task) => task.problem(&solvers.micro, rubber),
             Self::Fem(task) => task.problem(&solvers.fem, rubber),
-            Self::Multilevel(task) => task.problem(&solvers.multilevel.fem(), rubber),
+            Self::Multilevel(task) => task.problem(&solvers.pairs, rubber),
         }
     }
 
@@ -73,10 +81,8 @@ impl Task {
         match self {
             Self::Bem(task) => task.key(&solvers.bem, rubber),
             Self::Micro(task) => task.key(&solvers.micro, rubber),
-            Self::Fem(task) => task.key(&solvers.fem, &solvers.bem.area_fractions, rubber),
-            Self::Multilevel(task) => {
-                task.key(&solvers.multilevel.fem(), &solvers.bem.area_fractions, rubber)
-            }
+            Self::Fem(task) => task.key(&solvers.fem, rubber),
+            Self::Multilevel(task) => task.key(&solvers.pairs, rubber),
         }
     }
 
@@ -93,28 +99,19 @@ impl Task {
     ) -> Result<(), StageError> {
         match self {
             Self::Bem(task) => task.solve(&solvers.bem, rubber, store, watch).map(drop),
-            Self::Micro(task) => task.solve(&solvers.micro, rubber, store, watch),
-            Self::Fem(task) => {
-                task.solve(&solvers.fem, &solvers.bem.area_fractions, rubber, store, watch)
-            }
-            Self::Multilevel(task) => {
-                let (fem, areas) = (solvers.multilevel.fem(), &solvers.bem.area_fractions);
-                task.solve(&fem, areas, rubber, store, watch)
-            }
+            Self::Micro(task) => task.solve(&solvers.micro, rubber, store, watch).map(drop),
+            Self::Fem(task) => task.solve(&solvers.fem, rubber, store, watch).map(drop),
+            Self::Multilevel(task) => task.solve(&solvers.pairs, rubber, store, watch).map(drop),
         }
     }
 
     /// What it is, for messages: `bem, 8 waves, realisation 3, 10 mm/s`.
     pub fn name(&self) -> String {
-        let surface = |stage, surface: &crate::stages::realise::Surface, speed| {
-            let (waves, realisation) = (surface.waves, surface.realisation);
-            format!("{stage}, {waves} waves, realisation {realisation}, {speed} mm/s")
-        };
         match self {
-            Self::Bem(task) => surface("bem", &task.surface, task.speed_mm_s),
-            Self::Fem(task) => surface("fem", &task.surface, task.speed_mm_s),
-            Self::Multilevel(task) => surface("multilevel", &task.surface, task.speed_mm_s),
-            Self::Micro(task) => format!("micro, {}, {} mm/s", task.owner_names(), task.speed_mm_s),
+            Self::Bem(task) => task.name(),
+            Self::Fem(task) => task.name(),
+            Self::Multilevel(task) => task.surface.name_at("multilevel", task.speed_mm_s),
+            Self::Micro(task) => task.name(),
         }
     }
 }

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use asperity::artifact::{
-    ArrayDataset, Attribute, Digest, Identity, Input, Manifest, Metadata, Row, RunFolder,
-    SchemaVersion, SolveStore, Storage,
+    ArrayDataset, ArrayFile, Attribute, Digest, Identity, Input, Manifest, ResultFile, Row,
+    RunFolder, SolveStore, Storage, Table,
 };
 use serde_json::json;
 use tempfile::TempDir;
@@ -36,6 +36,14 @@ impl Row for Solve {
     const VERSION: u32 = 3;
 }
 
+const SOLVES: Table<Solve> = Table::new("bem", "solves.arrow");
+const FIELDS: ArrayFile = ArrayFile {
+    file: ResultFile { stage: "bem", name: "fields.h5" },
+    schema: "asperity.example.fields",
+    version: 1,
+    description: "Fields.",
+};
+
 /// A run with one finished stage `bem`.
 fn run() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -43,7 +51,7 @@ fn run() -> TempDir {
     let identity = Identity {
         stage: "bem".into(),
         stage_revision: 2,
-        output_schemas: vec![SchemaVersion { schema: Solve::SCHEMA.into(), version: 3 }],
+        output_schemas: vec![SOLVES.schema()],
         parameters: json!({ "speeds_mm_s": [10.0, 50.0] }),
         inputs: vec![Input {
             name: "rubber".into(),
@@ -65,17 +73,8 @@ fn run() -> TempDir {
     };
     let mut pending = run.begin("bem").unwrap();
     let rows: Vec<_> = (0..20).map(solve).collect();
-    pending.write_table("solves.arrow", &rows, &Metadata::new()).unwrap();
-    pending
-        .write_arrays(
-            "fields.h5",
-            "asperity.example.fields",
-            1,
-            "Fields.",
-            Storage::Plain,
-            &[heights],
-        )
-        .unwrap();
+    pending.write_rows(SOLVES, &rows).unwrap();
+    pending.write_arrays(FIELDS, Storage::Plain, &[heights]).unwrap();
     let manifest =
         Manifest::new(&identity, pending.outputs().to_vec(), vec!["one is coarse".into()], 1.5)
             .unwrap();

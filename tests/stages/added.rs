@@ -1,14 +1,12 @@
 //! A stage that the program does not have is one file, this one, and one line, its place in the order.
 
 use super::{Campaign, recipe};
-use asperity::artifact::{Metadata, ResultFile, Row, RunFolder, RunView, SchemaVersion};
+use asperity::artifact::{Row, RunFolder, RunView, SchemaVersion, Table};
 use asperity::numerics::Interrupt;
 use asperity::pipeline::{Event, PipelineError, Ready, Selection};
 use asperity::recipe::Recipe;
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
-use asperity::stages::{
-    Context, Contract, Inputs, Planned, Request, Stage, StageError, schema_of, tables,
-};
+use asperity::stages::tables::FRICTION;
+use asperity::stages::{Context, Contract, Inputs, Planned, Request, Stage, StageError, tables};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -30,7 +28,7 @@ impl Row for LargestRow {
     const VERSION: u32 = 1;
 }
 
-const FRICTION: ResultFile = ResultFile { stage: "tables", file: FRICTION_FILE };
+const LARGEST_TABLE: Table<LargestRow> = Table::new("largest", "largest.arrow");
 
 static LARGEST: Contract = Contract {
     name: "largest",
@@ -50,11 +48,11 @@ static SILENT: Contract = Contract {
 };
 
 fn schemas() -> Vec<SchemaVersion> {
-    vec![schema_of::<LargestRow>()]
+    vec![LARGEST_TABLE.schema()]
 }
 
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
-    silent(request).map(|planned| planned.reading([FRICTION]))
+    silent(request).map(|planned| planned.reading(FRICTION))
 }
 
 fn silent<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
@@ -63,13 +61,13 @@ fn silent<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
 }
 
 fn compute(inputs: &Inputs, context: &mut Context) -> Result<Vec<String>, StageError> {
-    let (rows, _) = inputs.results.read_table::<FrictionRow>("tables", FRICTION_FILE)?;
+    let rows = inputs.results.rows(FRICTION)?;
     let largest = rows.iter().max_by(|a, b| a.mean.total_cmp(&b.mean));
     let rows: Vec<LargestRow> = largest
         .map(|row| LargestRow { waves: row.waves, friction: row.mean })
         .into_iter()
         .collect();
-    context.pending.write_table("largest.arrow", &rows, &Metadata::new())?;
+    context.pending.write_rows(LARGEST_TABLE, &rows)?;
     Ok(vec!["a test".into()])
 }
 
@@ -103,12 +101,12 @@ fn a_stage_is_added_by_a_file_and_its_place() {
     let computed = run(&recipe, &out, all, &stages).unwrap();
     assert_eq!(computed.last(), Some(&Stage(&LARGEST)));
     let view = RunView::of(&out);
-    let (rows, _) = view.read_table::<LargestRow>("largest", "largest.arrow").unwrap();
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let rows = view.rows(LARGEST_TABLE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     let most = friction.iter().map(|row| row.mean).fold(0.0, f64::max);
     assert_eq!(rows[0].friction, most);
     let manifest = view.stage_manifest("largest").unwrap().unwrap();
-    assert_eq!(manifest.inputs[0].name, format!("tables/{FRICTION_FILE}"));
+    assert_eq!(manifest.inputs[0].name, format!("tables/{FRICTION}"));
     // Known like any other: up to date, forced, stale where what it reads is another.
     assert_eq!(run(&recipe, &out, all, &stages).unwrap(), []);
     let force = Selection { force: Some(Stage(&LARGEST)), ..all };
@@ -126,7 +124,7 @@ fn a_read_that_is_not_declared_is_an_error() {
     let campaign = Campaign::new();
     let (recipe, out) = (recipe(&campaign), campaign.path("out"));
     let error = run(&recipe, &out, Selection::default(), &with(&SILENT)).unwrap_err().to_string();
-    let said = format!("silent: a stage reads tables/{FRICTION_FILE} without declaring it");
+    let said = format!("silent: a stage reads tables/{FRICTION} without declaring it");
     assert!(error.starts_with(&said), "{error}");
     assert!(!out.join("silent").exists());
 }

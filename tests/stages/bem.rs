@@ -6,12 +6,9 @@ use asperity::contact::SlidingContact;
 use asperity::numerics::statistics::MeanEstimate;
 use asperity::recipe::Recipe;
 use asperity::rubber::read_rubber;
-use asperity::stages::bem::{
-    CURVES_FILE, CurveRow, FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION, REALISATIONS_FILE,
-    RealisationsRow, SOLVES_FILE, SolveRow,
-};
+use asperity::stages::bem::{CURVES, CurveRow, FIELDS, REALISATIONS, SOLVES, SolveRow};
 use asperity::stages::realise::{Surface, read_surfaces};
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
+use asperity::stages::tables::{FRICTION, FrictionRow};
 use asperity::surface::wave;
 
 const TOLERANCE: f64 = 1e-3;
@@ -52,8 +49,8 @@ fn solved() -> (Campaign, Recipe, RunView) {
 #[test]
 fn every_solve_is_a_solution_and_the_curve_holds_between_them() {
     let (_campaign, recipe, view) = solved();
-    let (solves, _) = view.read_table::<SolveRow>("bem", SOLVES_FILE).unwrap();
-    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let solves = view.rows(SOLVES).unwrap();
+    let curves = view.rows(CURVES).unwrap();
     assert_eq!(curves.len(), 4 * 2 * 7);
     for row in &solves {
         assert!(row.residual <= 1e-10, "{row:?}");
@@ -99,8 +96,8 @@ fn every_solve_is_a_solution_and_the_curve_holds_between_them() {
 #[test]
 fn tables_average_over_the_realisations() {
     let (_campaign, _, view) = solved();
-    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-    let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let curves = view.rows(CURVES).unwrap();
+    let rows = view.rows(FRICTION).unwrap();
     assert_eq!(rows.len(), 2 * 7);
     for row in &rows {
         let of_row = |c: &&CurveRow| {
@@ -123,7 +120,7 @@ fn tables_average_over_the_realisations() {
 #[test]
 fn fields_are_kept_at_the_wanted_areas() {
     let (_campaign, _, view) = solved();
-    let datasets = view.read_arrays("bem", FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION).unwrap();
+    let datasets = view.read_arrays(FIELDS).unwrap();
     assert_eq!(datasets.len(), 4 * 2 * 2);
     for pair in datasets.chunks(2) {
         let [pressure, separation] = pair else { unreachable!("chunks of two") };
@@ -155,8 +152,8 @@ fn a_wanted_accuracy_refines_the_grids_and_is_kept() {
         let out = campaign.path(&format!("out_{tolerance}"));
         run(&recipe(&campaign), &out);
         let view = RunView::of(out);
-        let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-        let (solves, _) = view.read_table::<SolveRow>("bem", SOLVES_FILE).unwrap();
+        let curves = view.rows(CURVES).unwrap();
+        let solves = view.rows(SOLVES).unwrap();
         (curves, solves.iter().map(|solve| solve.grid_points).sum::<u64>(), view)
     };
     let (coarse, points, view) = wanted(0.2);
@@ -169,7 +166,7 @@ fn a_wanted_accuracy_refines_the_grids_and_is_kept() {
         assert!((friction - fine.friction_coefficient).abs() <= error, "{coarse:?} {fine:?}");
     }
     // Two realisations are far from two in a thousand, and the tables say so.
-    let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let rows = view.rows(FRICTION).unwrap();
     for row in &rows {
         let parts = row.confidence_95.unwrap() + row.interpolation_error;
         assert_eq!(
@@ -220,8 +217,8 @@ fn as_many_realisations_are_solved_as_the_average_needs_without_the_waves_that_d
         let out = campaign.path(&format!("out{}", realisations.len()));
         run(&recipe(&campaign), &out);
         let view = RunView::of(out);
-        let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
-        let (counts, _) = view.read_table::<RealisationsRow>("bem", REALISATIONS_FILE).unwrap();
+        let rows = view.rows(FRICTION).unwrap();
+        let counts = view.rows(REALISATIONS).unwrap();
         (rows, counts, view)
     };
     let (rows, counts, view) = wanted("tolerance = 0.05", "");
@@ -243,8 +240,8 @@ fn as_many_realisations_are_solved_as_the_average_needs_without_the_waves_that_d
     // The last realisations once more, with all waves: the change of the mean is within its bound.
     let count = counts.iter().map(|count| count.realisations).min().unwrap();
     let (all, _, full) = wanted("", &format!("realisations = {count}"));
-    let (reduced_curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-    let (full_curves, _) = full.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let reduced_curves = view.rows(CURVES).unwrap();
+    let full_curves = full.rows(CURVES).unwrap();
     for row in &all {
         let mean = |curves: &[CurveRow]| {
             let of = |c: &&CurveRow| {

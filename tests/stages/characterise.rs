@@ -2,12 +2,11 @@
 //! out with a warning, the others are there.
 
 use super::{Campaign, recipe, try_run};
-use asperity::artifact::{Manifest, Row, RunView};
+use asperity::artifact::{Manifest, Row, RunView, Table};
 use asperity::pipeline::Selection;
 use asperity::stages;
 use asperity::stages::characterise::{
-    AVERAGE, DEPTH_FILE, DepthRow, HURST_FILE, HurstRow, ISOTROPIC_FILE, IsotropicRow,
-    PARAMETERS_FILE, PROFILE_FILE, ParametersRow, ProfileRow, SELF_AFFINE_FILE, SelfAffineRow,
+    AVERAGE, DEPTH, HURST, ISOTROPIC, PARAMETERS, PROFILE, SELF_AFFINE,
 };
 
 /// Ingest and characterise; returns the warnings of the latter.
@@ -27,8 +26,8 @@ fn with(keys: &str) -> (Campaign, Vec<String>) {
     (campaign, warnings)
 }
 
-fn table<R: Row>(campaign: &Campaign, file: &str) -> Vec<R> {
-    RunView::of(campaign.path("out")).read_table("characterise", file).unwrap().0
+fn rows<R: Row>(campaign: &Campaign, table: Table<R>) -> Vec<R> {
+    RunView::of(campaign.path("out")).rows(table).unwrap()
 }
 
 #[track_caller]
@@ -57,12 +56,12 @@ fn cut_offs_and_sections_that_do_not_fit_leave_rows_out_with_a_warning() {
         let (campaign, warnings) = with(keys);
         assert_told(&warnings, &["3 of 3 windows have no profile parameters: the first, track_0"]);
         assert_told(&warnings, parts);
-        assert_eq!(table::<ProfileRow>(&campaign, PROFILE_FILE), []);
-        assert_eq!(table::<ParametersRow>(&campaign, PARAMETERS_FILE).len(), 3);
+        assert_eq!(rows(&campaign, PROFILE), []);
+        assert_eq!(rows(&campaign, PARAMETERS).len(), 3);
     }
     let (campaign, warnings) = with("lambda_c_mm = 80.0");
     assert_told(&warnings, &["half a cut-off at each end", "8.0000 mm", "gaussian_regression"]);
-    assert_eq!(table::<ProfileRow>(&campaign, PROFILE_FILE), []);
+    assert_eq!(rows(&campaign, PROFILE), []);
     for (key, keys) in [
         ("lambda_c_mm", "lambda_c_mm = 80.0\nprofile_filter = \"gaussian_regression\""),
         ("section_length_mm", "section_length_mm = 80.0"),
@@ -72,7 +71,7 @@ fn cut_offs_and_sections_that_do_not_fit_leave_rows_out_with_a_warning() {
             "characterise.{key} = 80 is longer than what is evaluated of the window track_0"
         );
         assert_told(&warnings, &[&value, "one section"]);
-        let rows = table::<ProfileRow>(&campaign, PROFILE_FILE);
+        let rows = rows(&campaign, PROFILE);
         assert!(rows.len() == 3 && rows.iter().all(|row| row.sections == 1), "{rows:?}");
     }
     // What fits, and a section of the whole window, are no reason for a word.
@@ -85,7 +84,7 @@ fn segments_without_a_mean_profile_depth_are_told() {
     // The shorter segments have one gap of 160 points or none, the windows of 8 mm two each.
     let (campaign, warnings) =
         with("[characterise.profile_depth]\nsegment_mm = 4.0\nmost_drop_outs = 0.0");
-    let rows = table::<DepthRow>(&campaign, DEPTH_FILE);
+    let rows = rows(&campaign, DEPTH);
     let without = rows.iter().filter(|row| row.depth_mm.is_none()).count();
     assert!(without > 0 && rows.len() == 6, "{rows:?}");
     let count = format!("{without} of 6 segments have no mean profile depth: the first, track_");
@@ -106,7 +105,7 @@ fn segments_without_a_mean_profile_depth_are_told() {
 fn narrow_bins_leave_out_what_is_not_defined() {
     for bins in [500, 1000] {
         let (campaign, _) = with(&format!("spectrum_bins_per_decade = {bins}"));
-        let rows = table::<IsotropicRow>(&campaign, ISOTROPIC_FILE);
+        let rows = rows(&campaign, ISOTROPIC);
         assert!(rows.iter().any(|row| row.abel_density_mm4.is_some()), "{bins}");
     }
 }
@@ -117,9 +116,9 @@ fn a_self_affine_fit_that_fails_is_left_out_and_names_its_keys() {
     let keys = "characterise.self_affine_shortest_lag_mm, or raise self_affine_longest_lag_mm";
     assert_told(&warnings, &["no self-affine fit of the average", " mm, at least 3", keys]);
     assert_told(&warnings, &["3 of 3 windows have no self-affine fit: the first, track_0"]);
-    assert_eq!(table::<SelfAffineRow>(&campaign, SELF_AFFINE_FILE), []);
-    assert_eq!(table::<HurstRow>(&campaign, HURST_FILE), []);
-    assert_eq!(table::<ParametersRow>(&campaign, PARAMETERS_FILE).len(), 3);
+    assert_eq!(rows(&campaign, SELF_AFFINE), []);
+    assert_eq!(rows(&campaign, HURST), []);
+    assert_eq!(rows(&campaign, PARAMETERS).len(), 3);
 }
 
 /// The same positions as before, all at one height.
@@ -141,12 +140,9 @@ fn a_flat_scan_among_others_has_no_roughness_and_stops_nothing() {
     assert_told(&warnings, &["1 of 3 windows have no roughness parameters: the first, track_1"]);
     assert_told(&warnings, &["1 of 3 windows have no self-affine fit: the first, track_1"]);
     assert_told(&warnings, &["1 of 3 windows have no profile parameters: the first, track_1"]);
-    let names: Vec<_> = table::<ParametersRow>(&campaign, PARAMETERS_FILE)
-        .into_iter()
-        .map(|row| row.scan)
-        .collect();
+    let names: Vec<_> = rows(&campaign, PARAMETERS).into_iter().map(|row| row.scan).collect();
     assert_eq!(names, ["track_0", "track_2"]);
-    let rows = table::<SelfAffineRow>(&campaign, SELF_AFFINE_FILE);
+    let rows = rows(&campaign, SELF_AFFINE);
     assert_eq!(rows.last().unwrap().scan, AVERAGE);
 }
 
@@ -156,7 +152,7 @@ fn flat_scans_alone_are_characterised_and_the_fit_of_waves_says_why_it_cannot_be
     ["track_0", "track_1", "track_2"].iter().for_each(|scan| flatten(&campaign, scan));
     let warnings = characterise(&campaign);
     assert_told(&warnings, &["3 of 3 windows have no roughness parameters"]);
-    assert_eq!(table::<ParametersRow>(&campaign, PARAMETERS_FILE), []);
+    assert_eq!(rows(&campaign, PARAMETERS), []);
     let only = Selection { only: Some(stages::approximate::STAGE), ..Selection::default() };
     let error = try_run(&recipe(&campaign), &campaign.path("out"), only).unwrap_err();
     assert!(error.to_string().contains("correlation"), "{error}");

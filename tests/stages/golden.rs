@@ -3,7 +3,7 @@
 use super::run;
 use asperity::artifact::RunView;
 use asperity::recipe::Recipe;
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
+use asperity::stages::tables::{FRICTION, FrictionRow};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -31,8 +31,7 @@ fn smoke() -> Vec<Golden> {
     let recipe = Recipe::read(&project.join("pipelines/smoke.toml")).unwrap();
     let folder = tempfile::tempdir().unwrap();
     run(&recipe, folder.path());
-    let (rows, _) =
-        RunView::of(folder.path()).read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let rows = RunView::of(folder.path()).rows(FRICTION).unwrap();
     let each = |row: FrictionRow| {
         let golden = move |(realisation, friction_coefficient)| Golden {
             waves: row.waves,

@@ -11,14 +11,12 @@ use asperity::rubber::{Rheology, read_rubber};
 use asperity::schemas::documents;
 use asperity::stages;
 use asperity::stages::Stage;
-use asperity::stages::bem::{CURVES_FILE, CurveRow};
-use asperity::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};
-use asperity::stages::hybrid::{HYBRID_FILE, HybridRow, LOCAL_FILE, LocalRow};
-use asperity::stages::micro::{LAW_FILE, LawRow, SAMPLES_FILE, SampleRow};
+use asperity::stages::bem::CURVES;
+use asperity::stages::fem::FEM_SOLVES;
+use asperity::stages::hybrid::{HYBRID, HybridRow, LOCAL};
+use asperity::stages::micro::{LAW, SAMPLES, SampleRow};
 use asperity::stages::realise::read_surfaces;
-use asperity::stages::tables::{
-    CORRECTIONS_FILE, CorrectionRow, FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow,
-};
+use asperity::stages::tables::{CORRECTIONS, FRICTION, MODELS};
 use asperity::surface::{Wave, wave};
 use std::path::Path;
 
@@ -69,7 +67,7 @@ fn the_microscale_is_solved_over_the_pressures_that_the_macro_contact_asks_for()
     let campaign = campaign(0.016, "");
     let (recipe, view) = solved(&campaign);
     let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
-    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let samples = view.rows(SAMPLES).unwrap();
     let wave = Wave { wavelength: 6.25e-5, amplitude: 1.6e-5, phase: 0.0 };
     let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
     let options = BlockOptions::of_profile(COLUMNS, &profile);
@@ -82,7 +80,7 @@ fn the_microscale_is_solved_over_the_pressures_that_the_macro_contact_asks_for()
     assert!(difference.abs() < 2e-3 * solution.friction_coefficient, "{difference}");
     assert!(samples.iter().all(|row| row.residual <= 1e-8));
     assert!(samples.iter().all(|row| row.realisation == 0), "one wave, one curve");
-    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let rows = view.rows(HYBRID).unwrap();
     let asked = rows.iter().map(|row| row.largest_pressure_mpa).fold(0.0, f64::max);
     assert!(samples[samples.len() - 1].pressure_mpa >= asked);
 }
@@ -90,8 +88,8 @@ fn the_microscale_is_solved_over_the_pressures_that_the_macro_contact_asks_for()
 /// The macro contact of the last value of realisation 2, solved here: its row and its pressures in Pa.
 fn macro_contact(recipe: &Recipe, view: &RunView) -> (HybridRow, Vec<f64>) {
     let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
-    let (laws, _) = view.read_table::<LawRow>("micro", LAW_FILE).unwrap();
-    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let laws = view.rows(LAW).unwrap();
+    let rows = view.rows(HYBRID).unwrap();
     let surface = &read_surfaces(view).unwrap()[1];
     let law = LocalLaw::new(
         laws[0].touch_separation_m,
@@ -121,9 +119,9 @@ fn the_thesis_adds_the_mean_difference_over_the_macro_contact() {
     let rules = "correction = \"difference\"\nmean = \"points\"\nlocal_pressures = \"points\"";
     let campaign = campaign(0.016, &format!("[hybrid]\n{rules}"));
     let (recipe, view) = solved(&campaign);
-    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
-    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let curves = view.rows(CURVES).unwrap();
+    let samples = view.rows(SAMPLES).unwrap();
+    let rows = view.rows(HYBRID).unwrap();
     assert_eq!(rows.len(), curves.len());
     let (row, pressures) = macro_contact(&recipe, &view);
     let change = |p: f64| between(&samples, p, SampleRow::correction);
@@ -137,7 +135,7 @@ fn the_thesis_adds_the_mean_difference_over_the_macro_contact() {
     assert!(force.abs() > 0.02, "a correction that matters");
     let corrected = row.friction_half_space + row.correction_points.unwrap();
     assert_eq!(row.friction_coefficient, Some(corrected));
-    let (locals, _) = view.read_table::<LocalRow>("hybrid", LOCAL_FILE).unwrap();
+    let locals = view.rows(LOCAL).unwrap();
     for local in &locals {
         let sum = local.friction_half_space + local.correction;
         assert!((sum - local.friction_finite_deformation).abs() < 1e-12);
@@ -149,7 +147,7 @@ fn the_thesis_adds_the_mean_difference_over_the_macro_contact() {
 fn by_default_friction_changes_by_the_ratio_of_the_forces_of_the_microscale() {
     let campaign = campaign(0.016, "");
     let (recipe, view) = solved(&campaign);
-    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let samples = view.rows(SAMPLES).unwrap();
     let (row, pressures) = macro_contact(&recipe, &view);
     // Means over a period of the microscale, 8 of the 32 points.
     let window = |i: usize| (0..8).map(|k| pressures[(i + 32 - 4 + k) % 32]).sum::<f64>() / 8.0;
@@ -168,17 +166,17 @@ fn by_default_friction_changes_by_the_ratio_of_the_forces_of_the_microscale() {
 fn the_tables_have_every_model_and_how_far_they_are_apart() {
     let campaign = campaign(0.016, "[fem]\ncolumns_per_shortest_wavelength = 24");
     let (_, view) = solved(&campaign);
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     let of = |model: &str| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
     for model in ["bem", "hybrid", "fem"] {
         assert_eq!(of(model).len(), 2, "{model}");
     }
-    let (models, _) = view.read_table::<ModelRow>("tables", MODELS_FILE).unwrap();
+    let models = view.rows(MODELS).unwrap();
     let hybrid = models.iter().find(|r| r.model == "hybrid" && r.reference == "fem").unwrap();
     let pairs = of("hybrid").into_iter().zip(of("fem"));
     let by_hand = pairs.map(|(a, b)| (a.mean / b.mean - 1.0).abs()).sum::<f64>() / 2.0;
     assert!((hybrid.relative_error_of_averages - by_hand).abs() < 1e-12);
-    let (solves, _) = view.read_table::<FemSolveRow>("fem", FEM_SOLVES_FILE).unwrap();
+    let solves = view.rows(FEM_SOLVES).unwrap();
     assert!(solves.iter().all(|row| row.residual <= 1e-8 && row.columns == 96));
     let kinds: Vec<String> = documents().unwrap().into_iter().map(|(name, _)| name).collect();
     for stage in ["micro", "hybrid", "fem", "tables"] {
@@ -212,7 +210,7 @@ fn what_was_solved_before_does_not_show() {
 fn gentle_waves_need_no_correction() {
     let campaign = campaign(0.005, "");
     let (_, view) = solved(&campaign);
-    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let rows = view.rows(HYBRID).unwrap();
     assert!(rows.iter().all(|row| row.friction_coefficient == Some(row.friction_half_space)));
     let manifest = view.stage_manifest("micro").unwrap().unwrap();
     assert!(manifest.warnings[0].contains("micro.rms_slope_threshold"), "{manifest:?}");
@@ -251,7 +249,7 @@ fn only_the_correction_is_made_anew_when_its_rule_changes() {
     // Solves of the microscale are kept one by one.
     std::fs::remove_dir_all(out.join("micro")).unwrap();
     run(&changed, &out);
-    let again = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap().0;
+    let again = view.rows(SAMPLES).unwrap();
     assert!(again.iter().all(|row| row.residual <= 1e-8));
 }
 
@@ -296,7 +294,7 @@ fn a_microscale_without_a_solution_leaves_its_values_out() {
         ),
     );
     let (_, view) = solved(&campaign);
-    let (rows, _) = view.read_table::<HybridRow>("hybrid", HYBRID_FILE).unwrap();
+    let rows = view.rows(HYBRID).unwrap();
     let corrected = |row: &HybridRow| row.friction_coefficient.is_some();
     assert!(rows.iter().any(|row| row.waves == 2 && corrected(row)));
     assert!(rows.iter().any(|row| row.waves == 3));
@@ -334,7 +332,7 @@ fn an_accuracy_brings_the_errors_by_the_mesh_into_the_tables() {
     campaign.write("recipe.toml", &format!("tolerance = 0.2\n{text}"));
     let (recipe, view) = solved(&campaign);
     let rubber = read_rubber(&recipe.bem.as_ref().unwrap().rubber).unwrap();
-    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
+    let samples = view.rows(SAMPLES).unwrap();
     // Three times as many columns have a ninth of the error.
     let wave = Wave { wavelength: 6.25e-5, amplitude: 1.6e-5, phase: 0.0 };
     let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
@@ -350,7 +348,7 @@ fn an_accuracy_brings_the_errors_by_the_mesh_into_the_tables() {
         covered += usize::from(change <= error);
     }
     assert!(10 * covered >= 9 * samples.len(), "{covered} of {}", samples.len());
-    let (rows, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let rows = view.rows(FRICTION).unwrap();
     for row in &rows {
         assert_ne!(row.discretisation_error.unwrap(), 0.0, "{row:?}");
         assert!(row.error_estimate.unwrap() > row.confidence_95.unwrap(), "{row:?}");
@@ -375,8 +373,8 @@ fn published_corrections_stand_beside_the_samples() {
     campaign
         .write("local.csv", "pressure_mpa,friction_bem,friction_fem\n1.0,0.5,0.4\n1e4,0.1,0.1\n");
     let (_, view) = solved(&campaign);
-    let (samples, _) = view.read_table::<SampleRow>("micro", SAMPLES_FILE).unwrap();
-    let (rows, _) = view.read_table::<CorrectionRow>("tables", CORRECTIONS_FILE).unwrap();
+    let samples = view.rows(SAMPLES).unwrap();
+    let rows = view.rows(CORRECTIONS).unwrap();
     let [row] = rows.as_slice() else { panic!("{rows:?}") };
     assert_eq!((row.published_half_space, row.published_finite_deformation), (0.5, 0.4));
     let above = samples.iter().position(|sample| sample.pressure_mpa > 1.0).unwrap();
@@ -400,7 +398,7 @@ fn finite_elements_of_all_waves_are_solved_for_the_numbers_of_waves_that_are_ask
     let text = text.replace("[realise]", other).replace("waves = [2]", "waves = [1, 2]");
     campaign.write("recipe.toml", &text);
     let (_, view) = solved(&campaign);
-    let (solves, _) = view.read_table::<FemSolveRow>("fem", FEM_SOLVES_FILE).unwrap();
+    let solves = view.rows(FEM_SOLVES).unwrap();
     assert!(!solves.is_empty() && solves.iter().all(|row| row.waves == 1), "{solves:?}");
     campaign.write("recipe.toml", &text.replace("[fem]\nwaves = [1]", "[fem]\nwaves = [3]"));
     let error = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();

@@ -5,14 +5,12 @@
 //! Each has a test on data made here, and one on `../shared/cases` with the figures of its `case.md`.
 
 use super::{Campaign, recipe, try_run};
-use asperity::artifact::{Manifest, RunView};
+use asperity::artifact::{Manifest, Row, RunView, Table};
 use asperity::pipeline::Selection;
 use asperity::stages;
 use asperity::stages::Stage;
-use asperity::stages::characterise::{
-    DEPTH_FILE, DepthRow, PARAMETERS_FILE, PROFILE_FILE, ParametersRow, ProfileRow,
-};
-use asperity::stages::ingest::{REPORT_FILE, ScanReportRow, read_windows};
+use asperity::stages::characterise::{DEPTH, PARAMETERS, PROFILE};
+use asperity::stages::ingest::{REPORT, read_windows};
 use std::f64::consts::{LN_2, PI, TAU};
 use std::path::PathBuf;
 
@@ -39,8 +37,8 @@ fn warnings(campaign: &Campaign) -> Vec<String> {
     [stages::ingest::STAGE, stages::characterise::STAGE].into_iter().flat_map(of_stage).collect()
 }
 
-fn table<R: asperity::artifact::Row>(campaign: &Campaign, stage: &str, file: &str) -> Vec<R> {
-    RunView::of(campaign.path("out")).read_table(stage, file).unwrap().0
+fn rows<R: Row>(campaign: &Campaign, table: Table<R>) -> Vec<R> {
+    RunView::of(campaign.path("out")).rows(table).unwrap()
 }
 
 /// The file of a case, or a line that says why nothing is tested.
@@ -94,7 +92,7 @@ fn gaussian_filtered_parameters_leave_half_a_cut_off_at_each_end() {
     let keys = "[characterise]\nlambda_c_mm = 0.8\nself_affine_longest_lag_mm = 0.1";
     let made = campaign("sine.txt", text.as_bytes(), HEIGHTS_UM, keys);
     warnings(&made);
-    let row = table::<ProfileRow>(&made, "characterise", PROFILE_FILE).remove(0);
+    let row = rows(&made, PROFILE).remove(0);
     assert_eq!(row.sections, 4);
     approx::assert_relative_eq!(row.section_length_mm, 0.8, max_relative = 1e-12);
     let [ra, rq, rku] = convolved(&heights, 800);
@@ -109,7 +107,7 @@ fn gaussian_filtered_parameters_leave_half_a_cut_off_at_each_end() {
         "lambda_c_mm = 0.8\nprofile_filter = \"gaussian_regression\"",
     );
     warnings(&made);
-    let row = table::<ProfileRow>(&made, "characterise", PROFILE_FILE).remove(0);
+    let row = rows(&made, PROFILE).remove(0);
     assert_eq!(row.sections, 5);
 }
 
@@ -124,7 +122,7 @@ fn the_sine_of_the_case_has_the_parameters_of_its_transmission() {
     let text = if heights_alone { HEIGHTS_UM } else { text };
     let sine = campaign("sine.txt", &bytes, text, keys);
     warnings(&sine);
-    let row = table::<ProfileRow>(&sine, "characterise", PROFILE_FILE).remove(0);
+    let row = rows(&sine, PROFILE).remove(0);
     let transmission = 1.0 - 0.5_f64.powi(4);
     assert_eq!(row.sections, 4);
     // What of the mean remains one-sided at half a cut-off from the ends: 4e-3 of the weights. The
@@ -171,7 +169,7 @@ fn channels_of_an_erd_file_are_chosen_and_coarse_profiles_have_no_depth() {
         &told,
         &["1 of 1 windows have no mean profile depth", "25.0000 mm apart", "at most 1 mm"],
     );
-    assert_eq!(table::<DepthRow>(&road, "characterise", DEPTH_FILE), []);
+    assert_eq!(rows(&road, DEPTH), []);
     let left = rms(&road);
     let with = |channel: &str| {
         campaign("road.erd", erd().as_bytes(), &format!("erd_channel = {channel}"), keys)
@@ -207,8 +205,8 @@ fn the_wheel_paths_of_the_case_are_told_apart_and_have_no_depth() {
         let road = campaign("road.erd", &bytes, &format!("erd_channel = {channel}"), keys);
         let told = warnings(&road);
         assert_told(&told, &["no mean profile depth", "25.0000 mm apart"]);
-        assert_eq!(table::<DepthRow>(&road, "characterise", DEPTH_FILE), []);
-        let row = table::<ParametersRow>(&road, "characterise", PARAMETERS_FILE).remove(0);
+        assert_eq!(rows(&road, DEPTH), []);
+        let row = rows(&road, PARAMETERS).remove(0);
         // The figures are those of the waves; the file has them with three decimals, which moves the rms
         // by 3e-6 and 5e-6 (4.165262 and 6.363981 of the printed heights).
         approx::assert_relative_eq!(row.rq_mm, rms_mm, max_relative = 1e-5);
@@ -236,7 +234,7 @@ fn zeros_among_the_heights_are_warned_of_until_they_are_marks() {
     line.edit("recipe.toml", "z_unit = \"mm\"", "z_unit = \"mm\"\nmissing = [\"\", \"0\"]");
     let told = warnings(&line);
     assert!(!told.iter().any(|told| told.contains("the height 0")), "{told:?}");
-    let report = table::<ScanReportRow>(&line, "ingest", REPORT_FILE).remove(0);
+    let report = rows(&line, REPORT).remove(0);
     assert_eq!((report.points_read, report.points_missing), (800, 23));
 }
 
@@ -246,12 +244,12 @@ fn the_laser_line_of_the_case_is_warned_of_and_right_with_its_mark() {
     let keys = "[ingest.conditioning]\nform = \"mean\"\nspike_threshold = 0.0\n[characterise]";
     let line = campaign("scan.csv", &bytes, COMMA_MM, keys);
     assert_told(&warnings(&line), &["the height 0 mm is there 23 times in 800 points (2.9 %)"]);
-    let with_zeros = table::<ParametersRow>(&line, "characterise", PARAMETERS_FILE).remove(0);
+    let with_zeros = rows(&line, PARAMETERS).remove(0);
     approx::assert_relative_eq!(with_zeros.rq_mm, 0.46631, max_relative = 2e-5);
     approx::assert_relative_eq!(with_zeros.rms_slope, 2.6593, max_relative = 2e-5);
     line.edit("recipe.toml", "z_unit = \"mm\"", "z_unit = \"mm\"\nmissing = [\"\", \"0\"]");
     warnings(&line);
-    let row = table::<ParametersRow>(&line, "characterise", PARAMETERS_FILE).remove(0);
+    let row = rows(&line, PARAMETERS).remove(0);
     approx::assert_relative_eq!(row.rq_mm, 0.47316, max_relative = 2e-5);
     approx::assert_relative_eq!(row.rms_slope, 1.0824, max_relative = 5e-5);
 }

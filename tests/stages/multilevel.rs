@@ -9,12 +9,10 @@ use asperity::numerics::statistics::MeanEstimate;
 use asperity::pipeline::{self, Event, Selection};
 use asperity::recipe::Recipe;
 use asperity::stages;
-use asperity::stages::bem::{CURVES_FILE, CurveRow};
-use asperity::stages::fem::{FEM_FILE, FemCurveRow};
-use asperity::stages::multilevel::{
-    AVERAGES_FILE, AverageRow, Estimate, FURTHER_FILE, PAIRS_FILE, PairRow,
-};
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow};
+use asperity::stages::bem::CURVES;
+use asperity::stages::fem::FEM;
+use asperity::stages::multilevel::{AVERAGES, AverageRow, Estimate, FURTHER, PAIRS, PairRow};
+use asperity::stages::tables::{FRICTION, FrictionRow, MODELS};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Two waves that half-space and finite elements differ for by some per cent, few columns.
@@ -66,15 +64,15 @@ fn solved(campaign: &Campaign, out: &str) -> (Recipe, RunView) {
 }
 
 fn averages(view: &RunView) -> Vec<AverageRow> {
-    view.read_table::<AverageRow>("multilevel", AVERAGES_FILE).unwrap().0
+    view.rows(AVERAGES).unwrap()
 }
 
 #[test]
 fn the_average_is_the_mean_of_the_half_space_plus_the_mean_difference_of_the_pairs() {
     let campaign = campaign();
     let (_, view) = solved(&campaign, "out");
-    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-    let (pairs, _) = view.read_table::<PairRow>("multilevel", PAIRS_FILE).unwrap();
+    let curves = view.rows(CURVES).unwrap();
+    let pairs = view.rows(PAIRS).unwrap();
     let averages = averages(&view);
     assert_eq!((averages.len(), pairs.len()), (2, 8));
     let area = 0.4;
@@ -108,14 +106,14 @@ fn the_average_is_the_mean_of_the_half_space_plus_the_mean_difference_of_the_pai
     assert!((2.0..3.2).contains(&quantile), "{quantile} for {freedom}");
     assert_eq!((row.half_space_realisations, row.pairs, row.model_error), (12, 4, 0.0));
 
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     let table: Vec<&FrictionRow> = friction.iter().filter(|r| r.model == "multilevel").collect();
     assert_eq!((table.len(), table[1].mean), (2, row.friction_coefficient));
     assert_eq!(table[1].confidence_95, row.confidence_95);
     assert_eq!(table[1].half_space_realisations, Some(12));
     let full: Vec<f64> = own.iter().map(|row| row.friction_finite_deformation).collect();
     assert_eq!(table[1].realisations, full);
-    let (models, _) = view.read_table::<ModelRow>("tables", MODELS_FILE).unwrap();
+    let models = view.rows(MODELS).unwrap();
     assert!(models.iter().any(|r| r.model == "bem" && r.reference == "multilevel"));
 }
 
@@ -126,7 +124,7 @@ fn all_realisations_as_pairs_are_the_average_of_the_stage_fem() {
     let fem = "[fem]\ncolumns_per_shortest_wavelength = 16\npressure_ratio = 1.4\n\n[multilevel]";
     campaign.edit("recipe.toml", "[multilevel]", fem);
     let (_, view) = solved(&campaign, "out");
-    let (curves, _) = view.read_table::<FemCurveRow>("fem", FEM_FILE).unwrap();
+    let curves = view.rows(FEM).unwrap();
     for row in averages(&view) {
         let own = curves.iter().filter(|c| c.contact_area_fraction == row.contact_area_fraction);
         let own: Vec<f64> = own.map(|curve| curve.friction_coefficient).collect();
@@ -162,10 +160,10 @@ fn a_gentle_surface_has_no_finite_elements_and_the_bound_among_its_errors() {
     campaign.edit("recipe.toml", "amplitude_mm = 0.012", "amplitude_mm = 0.001");
     campaign.edit("recipe.toml", "amplitude_mm = 0.016", "amplitude_mm = 0.002");
     let (_, view) = solved(&campaign, "out");
-    let (pairs, _) = view.read_table::<PairRow>("multilevel", PAIRS_FILE).unwrap();
+    let pairs = view.rows(PAIRS).unwrap();
     assert_eq!(pairs, []);
-    let (curves, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-    let (further, _) = view.read_table::<CurveRow>("multilevel", FURTHER_FILE).unwrap();
+    let curves = view.rows(CURVES).unwrap();
+    let further = view.rows(FURTHER).unwrap();
     for row in averages(&view) {
         let own = curves.iter().chain(&further);
         let own = own.filter(|c| c.contact_area_fraction == row.contact_area_fraction);
@@ -177,7 +175,7 @@ fn a_gentle_surface_has_no_finite_elements_and_the_bound_among_its_errors() {
         assert!((0.005..0.025).contains(&relative), "{relative}");
         assert!(row.error_estimate.unwrap() <= 0.2 * row.friction_coefficient, "{row:?}");
     }
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     let row = friction.iter().find(|row| row.model == "multilevel").unwrap();
     assert_eq!((row.realisations.len(), row.standard_deviation), (0, None));
     assert!(row.model_error.unwrap() > 0.0);
@@ -288,8 +286,8 @@ fn families_of_three_waves_agree_with_averages_of_thirty_by_finite_elements() {
         "#,
     );
     let (_, view) = solved(&campaign, "out");
-    let (half_space, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
-    let (full, _) = view.read_table::<FemCurveRow>("fem", FEM_FILE).unwrap();
+    let half_space = view.rows(CURVES).unwrap();
+    let full = view.rows(FEM).unwrap();
     let mut of_all_families = 0;
     for speed in [10.0, 50.0] {
         for area in [0.03, 0.05, 0.1] {

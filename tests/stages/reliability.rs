@@ -3,12 +3,11 @@
 use super::{Campaign, recipe, run};
 use asperity::artifact::RunView;
 use asperity::stages;
-use asperity::stages::approximate::{FITS_FILE, FitRow};
+use asperity::stages::approximate::FITS;
 use asperity::stages::characterise::{
-    AGREEMENT_FILE, AVERAGE, AgreementRow, CORRELATION_FILE, CorrelationRow, HURST_FILE, HurstRow,
-    LARGEST_DIFFERENCE_KEY, RELIABLE_KEY, SPECTRUM_FILE, SpectrumRow,
+    AGREEMENT, AVERAGE, CORRELATION, HURST, LARGEST_DIFFERENCE_KEY, RELIABLE_KEY, SPECTRUM,
 };
-use asperity::stages::tables::{FRICTION_FILE, FrictionRow};
+use asperity::stages::tables::FRICTION;
 
 #[test]
 fn the_spot_reaches_the_ladder_and_the_friction_table() {
@@ -18,17 +17,16 @@ fn the_spot_reaches_the_ladder_and_the_friction_table() {
     let out = campaign.path("out");
     run(&recipe(&campaign), &out);
     let view = RunView::of(&out);
-    let (rows, metadata) =
-        view.read_table::<CorrelationRow>("characterise", CORRELATION_FILE).unwrap();
+    let (rows, metadata) = view.read_table(CORRELATION).unwrap();
     assert!(!rows.is_empty());
     assert_eq!(metadata[RELIABLE_KEY].parse::<f64>().unwrap(), 0.8);
     // The ladder begins at 0.5 mm: its first wave is left out.
-    let (fits, _) = view.read_table::<FitRow>("approximate", FITS_FILE).unwrap();
+    let fits = view.rows(FITS).unwrap();
     for fit in &fits {
         assert_eq!(fit.waves_fitted, fit.waves - 1);
         assert!(fit.warnings.contains("instrument (0.800000 mm); left out"), "{}", fit.warnings);
     }
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     assert!(!friction.is_empty());
     assert!(friction.iter().all(|row| row.shortest_reliable_wavelength_mm == Some(0.8)));
 }
@@ -41,11 +39,11 @@ fn conventions_and_the_cosine_check_stand_in_the_artifacts() {
     let out = campaign.path("out");
     run(&recipe(&campaign), &out);
     let view = RunView::of(&out);
-    let (rows, metadata) = view.read_table::<SpectrumRow>("characterise", SPECTRUM_FILE).unwrap();
+    let (rows, metadata) = view.read_table(SPECTRUM).unwrap();
     assert!(rows.iter().all(|row| row.standard_error_mm3 >= 0.0));
     assert_eq!(metadata["window"], "welch");
     assert!(metadata["sides"].starts_with("one-sided"));
-    let (rows, metadata) = view.read_table::<AgreementRow>("characterise", AGREEMENT_FILE).unwrap();
+    let (rows, metadata) = view.read_table(AGREEMENT).unwrap();
     let largest: f64 = metadata[LARGEST_DIFFERENCE_KEY].parse().unwrap();
     let found = rows.iter().map(|row| row.relative_difference.abs()).fold(0.0, f64::max);
     assert_eq!(found, largest);
@@ -53,6 +51,6 @@ fn conventions_and_the_cosine_check_stand_in_the_artifacts() {
         view.stage_manifest(stages::characterise::STAGE.name()).unwrap().unwrap().warnings;
     let warned = warnings.iter().any(|warning| warning.contains("correlation differ"));
     assert_eq!(warned, largest > 0.1);
-    let (rows, _) = view.read_table::<HurstRow>("characterise", HURST_FILE).unwrap();
+    let rows = view.rows(HURST).unwrap();
     assert!(rows.iter().any(|row| row.scan == AVERAGE && row.method == "correlation"));
 }

@@ -5,12 +5,9 @@ use asperity::artifact::RunView;
 use asperity::pipeline::Selection;
 use asperity::stages;
 use asperity::stages::characterise::{
-    AVERAGE, CORRELATION_FILE, CorrelationRow, PARAMETERS_FILE, PROFILE_FILE, ParametersRow,
-    ProfileRow, SPECTRUM_FILE, SpectrumRow, TEXTURE_FILE, TextureRow,
+    AVERAGE, CORRELATION, PARAMETERS, PROFILE, SPECTRUM, TEXTURE,
 };
-use asperity::stages::ingest::{
-    FAULTS_FILE, FaultRow, REPORT_FILE, ScanReportRow, WINDOWS_FILE, WindowRow, read_windows,
-};
+use asperity::stages::ingest::{FAULTS, REPORT, WINDOWS, read_windows};
 use asperity::surface::{Conditioning, RawScan, condition};
 use std::f64::consts::{PI, TAU};
 
@@ -74,10 +71,10 @@ fn ingest_takes_the_tilt_off_a_wave_and_keeps_its_gaps() {
         let error = (height - height_um(i) * 1e-6).abs();
         assert!(height.is_nan() || error <= shift, "point {i}: {error}");
     }
-    let (report, _) = view.read_table::<ScanReportRow>("ingest", REPORT_FILE).unwrap();
+    let report = view.rows(REPORT).unwrap();
     assert_eq!((report.len(), report[0].points_read, report[0].points_missing), (1, 400, 6));
     assert_eq!((report[0].windows_kept, report[0].windows_rejected), (1, 0));
-    let (windows, _) = view.read_table::<WindowRow>("ingest", WINDOWS_FILE).unwrap();
+    let windows = view.rows(WINDOWS).unwrap();
     assert_eq!((windows[0].missing_share, &windows[0].rejected), (6.0 / 400.0, &None));
     let tilt_mm = TILT_UM_PER_MM * 1e-3 * SPACING_MM * ((POINTS * POINTS - 1) as f64 / 12.0).sqrt();
     // Six points of 400 are left out of the mean square.
@@ -88,7 +85,7 @@ fn ingest_takes_the_tilt_off_a_wave_and_keeps_its_gaps() {
 fn characterise_finds_the_parameters_of_a_sine() {
     let campaign = campaign(&[]);
     let view = RunView::of(campaign.path("out"));
-    let (rows, _) = view.read_table::<ParametersRow>("characterise", PARAMETERS_FILE).unwrap();
+    let rows = view.rows(PARAMETERS).unwrap();
     let (row, amplitude) = (&rows[0], AMPLITUDE_UM / 1e3);
     // Means over whole waves of equidistant points are exact; the file keeps 1e-9 µm.
     approx::assert_relative_eq!(row.rq_mm, amplitude / 2_f64.sqrt(), max_relative = 1e-9);
@@ -106,7 +103,7 @@ fn characterise_finds_the_parameters_of_a_sine() {
 fn characterise_finds_correlation_and_spectrum_of_a_sine() {
     let campaign = campaign(&[]);
     let view = RunView::of(campaign.path("out"));
-    let (rows, _) = view.read_table::<CorrelationRow>("characterise", CORRELATION_FILE).unwrap();
+    let rows = view.rows(CORRELATION).unwrap();
     let amplitude = AMPLITUDE_UM / 1e3;
     for row in &rows {
         // (3.3.12): 4 D² sin²(q s / 2) times the mean of sin² over the pairs, which is 1/2 but for
@@ -123,7 +120,7 @@ fn characterise_finds_correlation_and_spectrum_of_a_sine() {
     assert!(of("wave").len() > 20);
     assert_eq!(of("wave"), of(AVERAGE));
 
-    let (rows, _) = view.read_table::<SpectrumRow>("characterise", SPECTRUM_FILE).unwrap();
+    let rows = view.rows(SPECTRUM).unwrap();
     let peak = rows.iter().max_by(|a, b| a.density_mm3.total_cmp(&b.density_mm3)).unwrap();
     // Ten bins a decade.
     let bin = 10_f64.powf(0.1);
@@ -135,7 +132,7 @@ fn characterise_finds_correlation_and_spectrum_of_a_sine() {
 fn characterise_finds_the_parameters_of_the_standards() {
     let campaign = campaign(&[]);
     let view = RunView::of(campaign.path("out"));
-    let (rows, _) = view.read_table::<ProfileRow>("characterise", PROFILE_FILE).unwrap();
+    let rows = view.rows(PROFILE).unwrap();
     let amplitude = AMPLITUDE_UM / 1e3;
     assert_eq!((rows.len(), rows[0].sections), (1, 5));
     approx::assert_relative_eq!(rows[0].rq_mm, amplitude / 2_f64.sqrt(), max_relative = 1e-9);
@@ -144,7 +141,7 @@ fn characterise_finds_the_parameters_of_the_standards() {
     // The formula errs by (q dx)^6 / 140; six points of 400 have no slope.
     approx::assert_relative_eq!(rows[0].rdq.unwrap(), slope, max_relative = 0.015);
 
-    let (rows, _) = view.read_table::<TextureRow>("characterise", TEXTURE_FILE).unwrap();
+    let rows = view.rows(TEXTURE).unwrap();
     let bands: Vec<_> = rows.iter().filter(|row| row.scan == "wave").collect();
     let sum: f64 = bands.iter().map(|row| row.mean_square_mm2).sum();
     // Hann's window keeps a whole number of waves within a wavenumber to either side.
@@ -157,7 +154,7 @@ fn characterise_finds_the_parameters_of_the_standards() {
 fn ingest_tells_of_every_fault() {
     let campaign = campaign(&[]);
     let view = RunView::of(campaign.path("out"));
-    let (rows, _) = view.read_table::<FaultRow>("ingest", FAULTS_FILE).unwrap();
+    let rows = view.rows(FAULTS).unwrap();
     let of = |name: &str| rows.iter().find(|row| row.fault == name).unwrap();
     for fault in ["repeated positions", "end plates", "spikes", "level jumps"] {
         assert_eq!(of(fault).count, 0, "{fault}");
@@ -204,8 +201,7 @@ fn scans_of_nearly_equal_spacing_share_one() {
     campaign.write("scans/track_1.txt", &stretched);
     let out = campaign.path("out");
     run(&recipe(&campaign), &out);
-    let (rows, _) =
-        RunView::of(out).read_table::<CorrelationRow>("characterise", CORRELATION_FILE).unwrap();
+    let rows = RunView::of(out).rows(CORRELATION).unwrap();
     let lags = |name: &str| -> Vec<f64> {
         rows.iter().filter(|row| row.scan == name).map(|row| row.lag_mm).collect()
     };

@@ -47,8 +47,8 @@ fn every_output_of_a_run_has_a_schema() {
 #[test]
 fn array_files_are_as_their_schemas_say() {
     let (_campaign, view) = run_with_fields();
-    conforms(&view.file("ingest", ingest::SCANS_FILE), &ingest::scans_schema());
-    conforms(&view.file("bem", bem::FIELDS_FILE), &bem::fields_schema());
+    conforms(&view.path_of(ingest::SCANS), &ingest::scans_schema());
+    conforms(&view.path_of(bem::FIELDS), &bem::fields_schema());
 }
 
 fn run_with_fields() -> (Campaign, RunView) {

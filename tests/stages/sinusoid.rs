@@ -10,8 +10,7 @@ use asperity::recipe::Recipe;
 use asperity::rubber::{Rheology, Rubber, read_rubber};
 use asperity::stages;
 use asperity::stages::sinusoid::{
-    AGREEMENT_FILE, ASYMPTOTES_FILE, AgreementRow, AsymptoteRow, FIELDS_FILE, FieldRow,
-    POINTS_FILE, PRESSURES_FILE, PointRow,
+    AGREEMENT, ASYMPTOTES, FIELDS, FieldRow, POINTS, PRESSURES, PointRow,
 };
 use asperity::surface::{Wave, wave};
 
@@ -65,7 +64,7 @@ fn every_point_is_a_solution_or_says_that_there_is_none() {
     let out = campaign.path("out");
     assert_eq!(run(&recipe, &out), [stages::sinusoid::STAGE]);
     let view = RunView::of(&out);
-    let (points, _) = view.read_table::<PointRow>("sinusoid", POINTS_FILE).unwrap();
+    let points = view.rows(POINTS).unwrap();
     assert_eq!(points.len(), 3 * 3);
     let rubber = read_rubber(campaign.path("rubber.toml")).unwrap();
     for row in &points {
@@ -84,12 +83,12 @@ fn every_point_is_a_solution_or_says_that_there_is_none() {
     // The half-space has a solution at every pressure, and its slow and fast limits are elastic.
     let half_space: Vec<&PointRow> = points.iter().filter(|r| r.model == "half-space").collect();
     assert!(half_space.iter().all(|row| row.friction_coefficient.is_some()));
-    let (limits, _) = view.read_table::<AsymptoteRow>("sinusoid", ASYMPTOTES_FILE).unwrap();
+    let limits = view.rows(ASYMPTOTES).unwrap();
     let slow = half_space[0].contact_area_fraction.unwrap();
     // At 0.001 mm/s the loss modulus is 6e-4 of the relaxed one; the rest is the grid of 512 points.
     approx::assert_relative_eq!(slow, limits[0].westergaard_area_fraction, max_relative = 0.01);
 
-    let (agreement, _) = view.read_table::<AgreementRow>("sinusoid", AGREEMENT_FILE).unwrap();
+    let agreement = view.rows(AGREEMENT).unwrap();
     assert_eq!(agreement.len(), 2 * 3 * 2);
     for row in &agreement {
         assert_eq!(
@@ -108,7 +107,7 @@ fn fields_and_pressures_are_as_the_recipe_asks() {
     let out = campaign.path("out");
     run(&recipe, &out);
     let view = RunView::of(&out);
-    let (fields, _) = view.read_table::<FieldRow>("sinusoid", FIELDS_FILE).unwrap();
+    let fields = view.rows(FIELDS).unwrap();
     for model in ["half-space", "neo-hookean"] {
         let rows: Vec<&FieldRow> = fields.iter().filter(|row| row.model == model).collect();
         assert_eq!(rows.len(), if model == "half-space" { 512 } else { 24 });
@@ -119,7 +118,7 @@ fn fields_and_pressures_are_as_the_recipe_asks() {
             assert!(row.pressure_mpa >= 0.0 && row.separation_mm > -1e-9 && closed, "{row:?}");
         }
     }
-    let (pressures, _) = view.read_table::<PointRow>("sinusoid", PRESSURES_FILE).unwrap();
+    let pressures = view.rows(PRESSURES).unwrap();
     assert_eq!(pressures.len(), 3 * 3);
     let beyond = pressures.iter().find(|r| r.model == "linear" && r.pressure_mpa == 30.0).unwrap();
     assert_eq!((beyond.friction_coefficient, beyond.contact_area_fraction), (None, None));

@@ -5,16 +5,14 @@ use asperity::artifact::RunView;
 use asperity::recipe::Recipe;
 use asperity::rubber::read_rubber;
 use asperity::stages;
-use asperity::stages::bem::{CURVES_FILE, CurveRow};
+use asperity::stages::bem::CURVES;
 use asperity::stages::realise::read_surfaces;
-use asperity::stages::tables::{
-    FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow, THEORIES_FILE, TheoryRow,
-};
+use asperity::stages::tables::{FRICTION, MODELS, THEORIES, TheoryRow};
 use asperity::surface::SineScale;
 use asperity::theory::Persson;
 use std::path::Path;
 
-const THEORIES: &str = "[tables]\ntheories = [\"persson\", \"klueppel-heinrich\"]\n";
+const BOTH_THEORIES: &str = "[tables]\ntheories = [\"persson\", \"klueppel-heinrich\"]\n";
 
 fn with_tables(campaign: &Campaign, tables: &str) -> String {
     campaign.read("recipe.toml") + "\n" + tables
@@ -26,8 +24,8 @@ fn theories_stand_beside_the_half_space_where_they_are_asked_for() {
     let out = campaign.path("out");
     run(&recipe(&campaign), &out);
     let view = RunView::of(&out);
-    assert!(!view.file("tables", THEORIES_FILE).exists(), "only on request");
-    campaign.write("recipe.toml", &with_tables(&campaign, THEORIES));
+    assert!(!view.path_of(THEORIES).exists(), "only on request");
+    campaign.write("recipe.toml", &with_tables(&campaign, BOTH_THEORIES));
     let recipe = recipe(&campaign);
     let stale = stale(&recipe, &out);
     assert_eq!((stale.len(), stale[0].0), (1, stages::tables::STAGE), "{stale:?}");
@@ -36,14 +34,14 @@ fn theories_stand_beside_the_half_space_where_they_are_asked_for() {
     let warnings = view.stage_manifest("tables").unwrap().unwrap().warnings;
     assert!(warnings.len() == 1 && warnings[0].contains("layer_ratio"), "{warnings:?}");
 
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     let of = |model: &str| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
     let areas = |model: &str| of(model).iter().map(|r| r.contact_area_fraction).collect::<Vec<_>>();
     for model in ["persson", "klueppel-heinrich"] {
         assert_eq!(areas(model), areas("bem"));
         assert!(of(model).iter().all(|row| row.realisations.len() == 2 && row.mean > 0.0));
     }
-    let (models, _) = view.read_table::<ModelRow>("tables", MODELS_FILE).unwrap();
+    let models = view.rows(MODELS).unwrap();
     let pair = models.iter().find(|row| row.model == "persson" && row.reference == "bem").unwrap();
     let pairs = of("persson").into_iter().zip(of("bem"));
     let by_hand = pairs.map(|(a, b)| a.mean / b.mean - 1.0).sum::<f64>() / 3.0;
@@ -55,7 +53,7 @@ fn a_theory_is_taken_at_the_pressure_of_its_own_area() {
     let campaign = Campaign::new();
     let constants =
         "[tables.theory_constants]\npersson_gamma = 0.75\nklueppel_heinrich_layer_ratio = 20.0\n";
-    campaign.write("recipe.toml", &with_tables(&campaign, &format!("{THEORIES}{constants}")));
+    campaign.write("recipe.toml", &with_tables(&campaign, &format!("{BOTH_THEORIES}{constants}")));
     let recipe = recipe(&campaign);
     let out = campaign.path("out");
     run(&recipe, &out);
@@ -69,8 +67,8 @@ fn a_theory_is_taken_at_the_pressure_of_its_own_area() {
     };
     let scales: Vec<SineScale> = surface.profile.iter().map(scale).collect();
     let theory = Persson::new(&scales, &rubber, 0.01, 0.75);
-    let (rows, _) = view.read_table::<TheoryRow>("tables", THEORIES_FILE).unwrap();
-    let (half_space, _) = view.read_table::<CurveRow>("bem", CURVES_FILE).unwrap();
+    let rows = view.rows(THEORIES).unwrap();
+    let half_space = view.rows(CURVES).unwrap();
     assert_eq!(rows.len(), 2 * half_space.len());
     let of_surface = |row: &&TheoryRow| row.model == "persson" && row.realisation == 2;
     for row in rows.iter().filter(of_surface) {

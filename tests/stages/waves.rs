@@ -3,12 +3,10 @@
 use super::Campaign;
 use asperity::artifact::{Identity, Manifest, Metadata, Pending, RunFolder, RunView};
 use asperity::numerics::Interrupt;
-use asperity::stages::approximate::{self, Approximate, FITS_FILE, FitRow, ScaleRow, WAVES_FILE};
-use asperity::stages::characterise::{
-    AVERAGE, CORRELATION_FILE, CorrelationRow, WINDOW_LENGTH_KEY,
-};
+use asperity::stages::approximate::{self, Approximate, FITS, ScaleRow};
+use asperity::stages::characterise::{AVERAGE, CORRELATION, CorrelationRow, WINDOW_LENGTH_KEY};
 use asperity::stages::realise::{self, Realise, Surface, read_surfaces};
-use asperity::stages::tables::{COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow};
+use asperity::stages::tables::{COMPARISON, FRICTION};
 use asperity::stages::{Context, StageError, Watch};
 use asperity::surface::SineScale;
 use asperity::surface::ladder::Undetermined;
@@ -68,7 +66,7 @@ fn measured(campaign: &Campaign) -> RunFolder {
         lags.dedup();
         let rows: Vec<_> = lags.into_iter().map(row).collect();
         let metadata = Metadata::from([(WINDOW_LENGTH_KEY.to_owned(), "10".to_owned())]);
-        Ok(context.pending.write_table(CORRELATION_FILE, &rows, &metadata)?)
+        Ok(context.pending.write_table(CORRELATION, &rows, &metadata)?)
     })
     .unwrap();
     folder
@@ -91,7 +89,7 @@ fn approximate_recovers_the_amplitudes() {
     let warnings =
         commit(&folder, "approximate", |c| approximate::run(&parameters(0.25, &[4]), &folder, c));
     assert_eq!(warnings.unwrap(), Vec::<String>::new());
-    let (rows, _) = folder.read_table::<ScaleRow>("approximate", WAVES_FILE).unwrap();
+    let rows = folder.rows(approximate::WAVES).unwrap();
     assert_eq!(rows.len(), 4);
     for (row, (wavelength, amplitude)) in rows.iter().zip(WAVES) {
         assert_eq!(row.wavelength_mm, wavelength);
@@ -104,7 +102,7 @@ fn approximate_recovers_the_amplitudes() {
         );
         assert_eq!(row.amplitude_confidence_95_mm, None, "one window has no spread");
     }
-    let (fits, _) = folder.read_table::<FitRow>("approximate", FITS_FILE).unwrap();
+    let fits = folder.rows(FITS).unwrap();
     assert!(fits[0].rms_residual_log10 < 1e-6 && fits[0].warnings.is_empty(), "{fits:?}");
 }
 
@@ -115,7 +113,7 @@ fn waves_beyond_two_samples_and_half_a_window_are_left_out_or_kept_with_a_warnin
     let folder = measured(&campaign);
     let fit = |parameters: &Approximate| {
         commit(&folder, "approximate", |c| approximate::run(parameters, &folder, c)).unwrap();
-        folder.read_table::<ScaleRow>("approximate", WAVES_FILE).unwrap()
+        folder.read_table(approximate::WAVES).unwrap()
     };
     let wavelengths =
         |rows: &[ScaleRow]| rows.iter().map(|row| row.wavelength_mm).collect::<Vec<_>>();
@@ -159,7 +157,7 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     let expected: Vec<_> = [3, 4].iter().flat_map(|w| (1..=5).map(move |r| (*w, r))).collect();
     assert_eq!(names, expected);
 
-    let (fitted, _) = folder.read_table::<ScaleRow>("approximate", WAVES_FILE).unwrap();
+    let fitted = folder.rows(approximate::WAVES).unwrap();
     for surface in &surfaces {
         let scales: Vec<SineScale> = fitted
             .iter()
@@ -214,8 +212,8 @@ fn approximations_with_the_same_surfaces_are_solved_once_and_compared_under_both
     assert!(surfaces.len() == 2 && surfaces.iter().all(|surface| surface.waves == 1));
     let warnings = view.stage_manifest("realise").unwrap().unwrap().warnings;
     assert!(warnings[0].starts_with("2 waves: the surfaces are those of 1 waves"), "{warnings:?}");
-    let (friction, _) = view.read_table::<FrictionRow>("tables", FRICTION_FILE).unwrap();
+    let friction = view.rows(FRICTION).unwrap();
     assert_eq!(friction.len(), 1);
-    let (compared, _) = view.read_table::<ComparisonRow>("tables", COMPARISON_FILE).unwrap();
+    let compared = view.rows(COMPARISON).unwrap();
     assert_eq!((compared.len(), compared[0].waves, compared[0].computed), (1, 2, friction[0].mean));
 }

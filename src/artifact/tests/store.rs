@@ -6,7 +6,14 @@ use serde_json::json;
 use super::{Sample, samples};
 use crate::artifact::*;
 
-const FILE: &str = "samples.arrow";
+const TABLE: Table<Sample> = Table::new("bem", "samples.arrow");
+const FILE: &str = TABLE.name();
+const HEIGHTS: ArrayFile = ArrayFile {
+    file: ResultFile { stage: "bem", name: "heights.h5" },
+    schema: "asperity.test.heights",
+    version: 1,
+    description: "Heights",
+};
 
 fn identity(revision: u32) -> Identity {
     Identity {
@@ -19,16 +26,14 @@ fn identity(revision: u32) -> Identity {
 }
 
 fn fill(pending: &mut Pending) {
-    pending.write_table(FILE, &samples(), &Metadata::new()).unwrap();
+    pending.write_rows(TABLE, &samples()).unwrap();
     let array = ArrayDataset {
         name: "heights".into(),
         unit: "m".into(),
         attributes: Default::default(),
         values: vec![1.0, 2.0],
     };
-    pending
-        .write_arrays("heights.h5", "asperity.test.heights", 1, "Heights", Storage::Plain, &[array])
-        .unwrap();
+    pending.write_arrays(HEIGHTS, Storage::Plain, &[array]).unwrap();
     fs::write(pending.path("notes.txt").unwrap(), "notes").unwrap();
     pending.record("notes.txt", "asperity.test.notes", 1, None).unwrap();
 }
@@ -66,8 +71,8 @@ fn a_committed_result_is_in_place_and_verified() {
         ["heights.h5", "manifest.json", "notes.txt", FILE]
     );
     run.verify("bem").unwrap();
-    assert_eq!(run.read_table::<Sample>("bem", FILE).unwrap().0, samples());
-    let arrays = run.read_arrays("bem", "heights.h5", "asperity.test.heights", 1).unwrap();
+    assert_eq!(run.rows(TABLE).unwrap(), samples());
+    let arrays = run.read_arrays(HEIGHTS).unwrap();
     assert_eq!(arrays[0].values, [1.0, 2.0]);
     let manifest = run.stage_manifest("bem").unwrap().unwrap();
     assert_eq!(manifest.outputs.len(), 3);
@@ -178,13 +183,13 @@ fn verification_names_the_bad_file() {
     fs::write(&path, &flipped).unwrap();
     read_table::<Sample>(&path).unwrap();
     assert!(matches!(run.verify("bem"), Err(ArtifactError::Damaged { .. })));
-    assert!(matches!(run.read_table::<Sample>("bem", FILE), Err(ArtifactError::Damaged { .. })));
+    assert!(matches!(run.rows(TABLE), Err(ArtifactError::Damaged { .. })));
 
     fs::remove_file(&path).unwrap();
     let missing = run.verify("bem").unwrap_err();
     assert!(matches!(missing, ArtifactError::Io { .. }), "{missing}");
 
-    let other = run.read_table::<Sample>("bem", "other.arrow").unwrap_err().to_string();
+    let other = run.rows(Table::<Sample>::new("bem", "other.arrow")).unwrap_err().to_string();
     assert!(
         other.contains("has no file `other.arrow`, it has: samples.arrow, heights.h5"),
         "{other}"

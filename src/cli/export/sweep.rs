@@ -4,7 +4,7 @@ use super::{CliError, Export, Format, csv_text, print};
 use crate::artifact::{RunView, csv_bytes, data_frame, parquet_bytes};
 use crate::report::{About, friction_tables, latex, markdown};
 use crate::stages::tables::FrictionRow;
-use crate::sweep::{FRICTION_FILE, STAGE, SweepFrictionRow};
+use crate::sweep::{FRICTION, STAGE, SweepFrictionRow};
 use crate::text::{markdown_text, visible_line};
 use std::fmt::Write;
 
@@ -36,7 +36,7 @@ impl Export {
             ));
         }
         view.verify(STAGE)?;
-        let mut frame = data_frame(&view.file(STAGE, FRICTION_FILE))?;
+        let mut frame = data_frame(&view.path_of(FRICTION))?;
         match (self.format, &self.to) {
             (Format::Csv, None) => print(&csv_text(&frame)?),
             (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
@@ -50,7 +50,7 @@ impl Export {
         view: &RunView,
         one: impl Fn(&str, &[crate::report::FrictionTable], &About) -> String,
     ) -> Result<(), CliError> {
-        let (rows, _) = view.read_table::<SweepFrictionRow>(STAGE, FRICTION_FILE)?;
+        let rows = view.rows(FRICTION)?;
         let manifest = view.stage_manifest(STAGE)?;
         let tolerance = manifest.and_then(|manifest| manifest.parameters["tolerance"].as_f64());
         let mut text = String::new();

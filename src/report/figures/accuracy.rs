@@ -5,10 +5,10 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::bem::{SOLVES_FILE, SolveRow};
-use crate::stages::fem::{FEM_SOLVES_FILE, FemSolveRow};
-use crate::stages::micro::{SAMPLES_FILE, SampleRow};
-use crate::stages::tables::{FRICTION_FILE, FrictionRow};
+use crate::stages::bem::SOLVES;
+use crate::stages::fem::{FEM_SOLVES, FemSolveRow};
+use crate::stages::micro::SAMPLES;
+use crate::stages::tables::{FRICTION, FrictionRow};
 
 /// Errors below this are round-off; they would stretch the axis.
 const LEAST_ERROR: f64 = 1e-12;
@@ -16,7 +16,7 @@ const LEAST_ERROR: f64 = 1e-12;
 /// Seconds of every solve against its estimated error, and the errors of the averages by part.
 pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let mut panels: Vec<Panel> = solves(run)?.into_iter().collect();
-    let friction = rows::<FrictionRow>(run, "tables", FRICTION_FILE)?.unwrap_or_default();
+    let friction = rows(run, FRICTION)?.unwrap_or_default();
     let half_space: Vec<FrictionRow> =
         friction.into_iter().filter(|row| row.model == "bem").collect();
     let tables = grouped(&half_space, |row| (row.waves, speed_key(row.speed_mm_s)));
@@ -29,10 +29,10 @@ pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
 }
 
 fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
-    let bem = rows::<SolveRow>(run, "bem", SOLVES_FILE)?.unwrap_or_default();
-    let micro = rows::<SampleRow>(run, "micro", SAMPLES_FILE)?.unwrap_or_default();
-    let fem = rows::<FemSolveRow>(run, "fem", FEM_SOLVES_FILE)?.unwrap_or_default();
-    let multilevel = rows::<FemSolveRow>(run, "multilevel", FEM_SOLVES_FILE)?.unwrap_or_default();
+    let bem = rows(run, SOLVES)?.unwrap_or_default();
+    let micro = rows(run, SAMPLES)?.unwrap_or_default();
+    let fem = rows(run, FEM_SOLVES)?.unwrap_or_default();
+    let multilevel = rows(run, FEM_SOLVES)?.unwrap_or_default();
     let relative = |error: f64, friction: f64, seconds: f64| {
         let error = (error / friction).abs();
         (error.is_finite() && error > LEAST_ERROR && seconds > 0.0).then_some((error, seconds))

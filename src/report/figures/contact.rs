@@ -5,11 +5,11 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::bem::{SOLVES_FILE, SolveRow};
+use crate::stages::bem::SOLVES;
 
 /// A panel for each number of waves; in it every solved contact, a colour for each speed.
 pub(super) fn area(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some(solves) = rows::<SolveRow>(run, "bem", SOLVES_FILE)? else { return Ok(None) };
+    let Some(solves) = rows(run, SOLVES)? else { return Ok(None) };
     let panels = grouped(&solves, |row| row.waves).into_iter().map(|(waves, rows)| {
         let speeds = grouped(&rows, |row| speed_key(row.speed_mm_s)).into_values().enumerate();
         let series = speeds.map(|(number, rows)| {

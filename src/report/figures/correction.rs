@@ -5,17 +5,17 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::hybrid::{HYBRID_FILE, HybridRow};
-use crate::stages::micro::{SAMPLES_FILE, SampleRow};
+use crate::stages::hybrid::{HYBRID, HybridRow};
+use crate::stages::micro::{SAMPLES, SampleRow};
 
 /// Friction of the microscale under both models, their difference, and what it makes of the
 /// friction of the whole surface.
 pub(super) fn correction(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let samples = rows::<SampleRow>(run, "micro", SAMPLES_FILE)?.unwrap_or_default();
+    let samples = rows(run, SAMPLES)?.unwrap_or_default();
     if samples.is_empty() {
         return Ok(None);
     }
-    let curves = rows::<HybridRow>(run, "hybrid", HYBRID_FILE)?.unwrap_or_default();
+    let curves = rows(run, HYBRID)?.unwrap_or_default();
     let mut panels = vec![];
     for (waves, rows) in grouped(&samples, |row| row.waves) {
         panels.push(both_models(waves, &rows));

@@ -4,8 +4,7 @@ use super::thinned;
 use crate::artifact::{ArrayDataset, Attribute, RunView};
 use crate::plot::{Axis, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
-use crate::report::read::has;
-use crate::stages::bem::{FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION};
+use crate::stages::bem::FIELDS;
 use crate::stages::realise::{Surface, read_surfaces};
 
 const COLUMNS: usize = 1000;
@@ -40,10 +39,10 @@ fn place(name: &str) -> Option<(Place, &str)> {
 
 /// For each speed one contact: the most waves, the first realisation, the middle one of the areas.
 fn fields(run: &RunView) -> Result<Vec<Field>, ReportError> {
-    if !has(run, "bem", FIELDS_FILE)? {
+    if !run.has(FIELDS)? {
         return Ok(vec![]);
     }
-    let datasets = run.read_arrays("bem", FIELDS_FILE, FIELDS_SCHEMA, FIELDS_VERSION)?;
+    let datasets = run.read_arrays(FIELDS)?;
     let places: Vec<Place> = datasets
         .iter()
         .filter_map(|dataset| place(&dataset.name))

@@ -5,19 +5,19 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::tables::{COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow};
+use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow};
 
 const AREA: &str = "contact area fraction Ac/A0";
-const FRICTION: &str = "friction coefficient µ";
+const FRICTION_LABEL: &str = "friction coefficient µ";
 
 /// A panel for each number of waves and speed; in it each model with its band.
 pub(super) fn friction(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some(all) = rows::<FrictionRow>(run, "tables", FRICTION_FILE)? else { return Ok(None) };
+    let Some(all) = rows(run, FRICTION)? else { return Ok(None) };
     let tables = grouped(&all, |row| (row.waves, super::speed_key(row.speed_mm_s)));
     let panels = tables.into_values().map(|rows| Panel {
         title: heading(rows[0].waves, rows[0].speed_mm_s),
         across: Axis::from_zero(AREA),
-        up: Axis::from_zero(FRICTION),
+        up: Axis::from_zero(FRICTION_LABEL),
         series: rows.chunk_by(|a, b| a.model == b.model).flat_map(model).collect(),
     });
     Ok(Some(Figure {
@@ -77,7 +77,7 @@ pub(super) fn look(model: &str) -> (usize, bool) {
 
 /// Published friction as discs beside the computed line and its band.
 pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some(all) = rows::<ComparisonRow>(run, "tables", COMPARISON_FILE)? else {
+    let Some(all) = rows(run, COMPARISON)? else {
         return Ok(None);
     };
     let tables = all.chunk_by(|a, b| a.published_table == b.published_table);
@@ -96,7 +96,7 @@ pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
                 heading(rows[0].waves, rows[0].speed_mm_s)
             ),
             across: Axis::from_zero(AREA),
-            up: Axis::from_zero(FRICTION),
+            up: Axis::from_zero(FRICTION_LABEL),
             series: vec![
                 Series::new("95 % interval", 1, Mark::Band(band.collect())),
                 Series::new("computed mean", 1, Mark::Line(line(|row| row.computed))),

@@ -6,19 +6,18 @@ use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
 use crate::report::read::{rows, table};
-use crate::stages::approximate::{FITTED_FILE, FittedRow};
+use crate::stages::approximate::FITTED;
 use crate::stages::characterise::{
-    AVERAGE, CORRELATION_FILE, CorrelationRow, RELIABLE_KEY, SELF_AFFINE_FILE, SPECTRUM_FILE,
-    SelfAffineRow, SpectrumRow,
+    AVERAGE, CORRELATION, RELIABLE_KEY, SELF_AFFINE, SPECTRUM, SelfAffineRow, SpectrumRow,
 };
 use std::f64::consts::TAU;
 
 /// Correlation of the scans, of their self-affine fit and of the superposed sines.
 pub(super) fn correlation(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some(measured) = rows::<CorrelationRow>(run, "characterise", CORRELATION_FILE)? else {
+    let Some(measured) = rows(run, CORRELATION)? else {
         return Ok(None);
     };
-    let fitted = rows::<FittedRow>(run, "approximate", FITTED_FILE)?.unwrap_or_default();
+    let fitted = rows(run, FITTED)?.unwrap_or_default();
     let average: Vec<(f64, f64)> = measured
         .iter()
         .filter(|row| row.scan == AVERAGE)
@@ -30,7 +29,7 @@ pub(super) fn correlation(run: &RunView) -> Result<Option<Figure>, ReportError> 
         let mark = if number % 2 == 0 { Mark::Line(line) } else { Mark::Dashed(line) };
         series.push(Series::new(format!("{waves} sines"), number + 2, mark));
     }
-    let fits = rows::<SelfAffineRow>(run, "characterise", SELF_AFFINE_FILE)?.unwrap_or_default();
+    let fits = rows(run, SELF_AFFINE)?.unwrap_or_default();
     if let Some(fit) = fits.iter().find(|row| row.scan == AVERAGE) {
         series.insert(0, self_affine(fit, &average));
     }
@@ -60,7 +59,7 @@ fn self_affine(fit: &SelfAffineRow, average: &[(f64, f64)]) -> Series {
 
 /// Spectrum of the scans with its standard error and the limit of what the instrument shows.
 pub(super) fn spectrum(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some((all, metadata)) = table::<SpectrumRow>(run, "characterise", SPECTRUM_FILE)? else {
+    let Some((all, metadata)) = table(run, SPECTRUM)? else {
         return Ok(None);
     };
     let average: Vec<&SpectrumRow> = all.iter().filter(|row| row.scan == AVERAGE).collect();

@@ -3,9 +3,8 @@
 use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
-use crate::report::read::has;
 use crate::rubber::{FrequencyRange, Rubber};
-use crate::stages::realise::{SURFACES_FILE, read_surfaces};
+use crate::stages::realise::{SURFACES, read_surfaces};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -34,7 +33,7 @@ pub(in crate::report) fn material(run: &RunView) -> Result<Option<Material>, Rep
     };
     let measured = &parameters["measured"];
     let ends = [measured["lowest_hz"].as_f64(), measured["highest_hz"].as_f64()];
-    let surfaces = if has(run, "realise", SURFACES_FILE)? { read_surfaces(run)? } else { vec![] };
+    let surfaces = if run.has(SURFACES)? { read_surfaces(run)? } else { vec![] };
     let waves = || surfaces.iter().flat_map(|s| &s.profile).filter(|w| w.amplitude > 0.0);
     let speeds = parameters["speeds_mm_s"].as_array().into_iter().flatten();
     let excited = speeds.filter_map(Value::as_f64).filter_map(|speed| {

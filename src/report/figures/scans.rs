@@ -5,8 +5,7 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
-use crate::report::read::has;
-use crate::stages::ingest::{SCANS_FILE, read_windows};
+use crate::stages::ingest::{SCANS, read_windows};
 use crate::surface::LineScan;
 use std::f64::consts::TAU;
 
@@ -17,7 +16,7 @@ const COLUMNS: usize = 800;
 const BINS: usize = 60;
 
 fn windows(run: &RunView) -> Result<Vec<LineScan>, ReportError> {
-    if has(run, "ingest", SCANS_FILE)? { Ok(read_windows(run)?) } else { Ok(vec![]) }
+    if run.has(SCANS)? { Ok(read_windows(run)?) } else { Ok(vec![]) }
 }
 
 fn valid(windows: &[LineScan]) -> impl Iterator<Item = f64> {

@@ -5,7 +5,7 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::approximate::{ScaleRow, WAVES_FILE};
+use crate::stages::approximate::{ScaleRow, WAVES};
 
 /// The steepness from which a wave counts to the microscale of a run, if it has one.
 pub(in crate::report) fn microscale_slope(run: &RunView) -> Result<Option<f64>, ReportError> {
@@ -15,7 +15,7 @@ pub(in crate::report) fn microscale_slope(run: &RunView) -> Result<Option<f64>, 
 
 /// Amplitudes with their intervals, and slopes with the limit of the half-space.
 pub(super) fn waves(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some(scales) = rows::<ScaleRow>(run, "approximate", WAVES_FILE)? else { return Ok(None) };
+    let Some(scales) = rows(run, WAVES)? else { return Ok(None) };
     let (mut amplitudes, mut slopes) = (vec![], vec![]);
     for (number, (waves, rows)) in grouped(&scales, |row| row.waves).into_iter().enumerate() {
         let name = format!("{waves} waves");

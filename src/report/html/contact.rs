@@ -6,7 +6,7 @@ use crate::report::ReportError;
 use crate::report::figures::{Material, material};
 use crate::report::read::rows;
 use crate::stages;
-use crate::stages::micro::{SAMPLES_FILE, SampleRow};
+use crate::stages::micro::{SAMPLES, SampleRow};
 use maud::{Markup, html};
 
 impl Report<'_> {
@@ -20,7 +20,7 @@ impl Report<'_> {
                 "Friction of the half-space is not corrected in this run: its recipe has no section [micro].",
             ));
         }
-        let samples = rows::<SampleRow>(self.run, "micro", SAMPLES_FILE)?.unwrap_or_default();
+        let samples = rows(self.run, SAMPLES)?.unwrap_or_default();
         Ok(html! {
             (self.warnings(&[stages::micro::STAGE, stages::hybrid::STAGE])?)
             (self.figure("correction")?)

@@ -7,17 +7,15 @@ use crate::report::read::rows;
 use crate::report::tables::{About, FrictionTable, friction_tables};
 use crate::stages;
 use crate::stages::Stage;
-use crate::stages::bem::{REALISATIONS_FILE, RealisationsRow, SOLVES_FILE, SolveRow};
-use crate::stages::tables::{
-    COMPARISON_FILE, ComparisonRow, FRICTION_FILE, FrictionRow, MODELS_FILE, ModelRow,
-};
+use crate::stages::bem::{REALISATIONS, RealisationsRow, SOLVES};
+use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, MODELS, ModelRow};
 use maud::{Markup, html};
 
 const NO_TABLES: &str = "This run has no averaged friction yet: the stage tables is not there.";
 
 impl Report<'_> {
     fn friction_rows(&self) -> Result<Vec<FrictionRow>, ReportError> {
-        Ok(rows(self.run, "tables", FRICTION_FILE)?.unwrap_or_default())
+        Ok(rows(self.run, FRICTION)?.unwrap_or_default())
     }
 
     pub(super) fn friction(&self) -> Result<Markup, ReportError> {
@@ -25,7 +23,7 @@ impl Report<'_> {
         if all.is_empty() {
             return Ok(absent(NO_TABLES));
         }
-        let models = rows::<ModelRow>(self.run, "tables", MODELS_FILE)?.unwrap_or_default();
+        let models = rows(self.run, MODELS)?.unwrap_or_default();
         Ok(html! {
             (self.warnings(&[stages::tables::STAGE])?)
             p { "Models: " (models_in_words(&all)) "." }
@@ -41,8 +39,7 @@ impl Report<'_> {
         if all.is_empty() {
             return Ok(absent(NO_TABLES));
         }
-        let compared =
-            rows::<ComparisonRow>(self.run, "tables", COMPARISON_FILE)?.unwrap_or_default();
+        let compared = rows(self.run, COMPARISON)?.unwrap_or_default();
         let about = About::of(self.run)?;
         Ok(html! {
             (self.doubt(&[stages::tables::STAGE]))
@@ -54,9 +51,8 @@ impl Report<'_> {
     }
 
     pub(super) fn accuracy(&self) -> Result<Markup, ReportError> {
-        let solves = rows::<SolveRow>(self.run, "bem", SOLVES_FILE)?.unwrap_or_default();
-        let realisations =
-            rows::<RealisationsRow>(self.run, "bem", REALISATIONS_FILE)?.unwrap_or_default();
+        let solves = rows(self.run, SOLVES)?.unwrap_or_default();
+        let realisations = rows(self.run, REALISATIONS)?.unwrap_or_default();
         let friction = self.friction_rows()?;
         let tolerance = self.tolerance()?;
         Ok(html! {

@@ -6,8 +6,8 @@ use crate::report::ReportError;
 use crate::report::figures::microscale_slope;
 use crate::report::read::rows;
 use crate::stages;
-use crate::stages::approximate::{FITS_FILE, FitRow, ScaleRow, WAVES_FILE};
-use crate::stages::characterise::{AVERAGE, HURST_FILE, HurstRow, SELF_AFFINE_FILE, SelfAffineRow};
+use crate::stages::approximate::{FITS, FitRow, ScaleRow, WAVES};
+use crate::stages::characterise::{AVERAGE, HURST, SELF_AFFINE, SelfAffineRow};
 use maud::{Markup, html};
 
 impl Report<'_> {
@@ -15,9 +15,8 @@ impl Report<'_> {
         if !self.has(stages::characterise::STAGE)? {
             return Ok(absent("No scans were characterised in this run: the waves are given."));
         }
-        let fits = rows::<FitRow>(self.run, "approximate", FITS_FILE)?.unwrap_or_default();
-        let affine =
-            rows::<SelfAffineRow>(self.run, "characterise", SELF_AFFINE_FILE)?.unwrap_or_default();
+        let fits = rows(self.run, FITS)?.unwrap_or_default();
+        let affine = rows(self.run, SELF_AFFINE)?.unwrap_or_default();
         let average: Vec<_> = affine.iter().filter(|row| row.scan == AVERAGE).collect();
         Ok(html! {
             (self.warnings(&[stages::characterise::STAGE, stages::approximate::STAGE, stages::realise::STAGE])?)
@@ -31,7 +30,7 @@ impl Report<'_> {
         if !self.has(stages::characterise::STAGE)? {
             return Ok(absent("No scans were characterised in this run: the waves are given."));
         }
-        let hurst = rows::<HurstRow>(self.run, "characterise", HURST_FILE)?.unwrap_or_default();
+        let hurst = rows(self.run, HURST)?.unwrap_or_default();
         let average: Vec<_> = hurst.into_iter().filter(|row| row.scan == AVERAGE).collect();
         Ok(html! {
             (self.figure("spectrum")?)
@@ -49,7 +48,7 @@ impl Report<'_> {
     }
 
     pub(super) fn waves(&self) -> Result<Markup, ReportError> {
-        let Some(scales) = rows::<ScaleRow>(self.run, "approximate", WAVES_FILE)? else {
+        let Some(scales) = rows(self.run, WAVES)? else {
             return Ok(absent("No waves were fitted or given in this run."));
         };
         let limit = microscale_slope(self.run)?;

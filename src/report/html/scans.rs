@@ -5,21 +5,19 @@ use super::page::{absent, number, optional, percent, table};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages;
-use crate::stages::characterise::{AVERAGES_FILE, AverageRow, PARAMETERS_FILE, ParametersRow};
-use crate::stages::ingest::{
-    FAULTS_FILE, FaultRow, REPORT_FILE, ScanReportRow, WINDOWS_FILE, WindowRow,
-};
+use crate::stages::characterise::{AVERAGES, PARAMETERS, ParametersRow};
+use crate::stages::ingest::{FAULTS, FaultRow, REPORT, ScanReportRow, WINDOWS, WindowRow};
 use maud::{Markup, html};
 
 const NO_SCANS: &str = "This run has no scans: its recipe states the waves itself.";
 
 impl Report<'_> {
     pub(super) fn input(&self) -> Result<Markup, ReportError> {
-        let Some(scans) = rows::<ScanReportRow>(self.run, "ingest", REPORT_FILE)? else {
+        let Some(scans) = rows(self.run, REPORT)? else {
             return Ok(absent(NO_SCANS));
         };
-        let faults = rows::<FaultRow>(self.run, "ingest", FAULTS_FILE)?.unwrap_or_default();
-        let windows = rows::<WindowRow>(self.run, "ingest", WINDOWS_FILE)?.unwrap_or_default();
+        let faults = rows(self.run, FAULTS)?.unwrap_or_default();
+        let windows = rows(self.run, WINDOWS)?.unwrap_or_default();
         let found: Vec<&FaultRow> = faults.iter().filter(|fault| fault.count > 0).collect();
         let rejected: Vec<&WindowRow> = windows.iter().filter(|w| w.rejected.is_some()).collect();
         let points: u64 = scans.iter().map(|scan| scan.points_read).sum();
@@ -46,10 +44,8 @@ impl Report<'_> {
         if !self.has(stages::ingest::STAGE)? {
             return Ok(absent(NO_SCANS));
         }
-        let averages =
-            rows::<AverageRow>(self.run, "characterise", AVERAGES_FILE)?.unwrap_or_default();
-        let parameters =
-            rows::<ParametersRow>(self.run, "characterise", PARAMETERS_FILE)?.unwrap_or_default();
+        let averages = rows(self.run, AVERAGES)?.unwrap_or_default();
+        let parameters = rows(self.run, PARAMETERS)?.unwrap_or_default();
         Ok(html! {
             (self.figure("scans")?)
             (self.figure("heights")?)

@@ -1,7 +1,7 @@
 //! One curve of friction over contact area: one surface at one speed.
 
 use super::{Bem, SolveRow};
-use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore, Solves};
+use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore};
 use crate::contact::curve::{CurveError, friction_curve};
 use crate::contact::refine::{
     GridError, HALF_SPACE, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refinement, Watched, on_grid,
@@ -11,6 +11,7 @@ use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, Slid
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use crate::stages::SolveError;
+use crate::stages::kept::{self, Kept};
 use crate::stages::realise::Surface;
 use crate::surface::wave;
 use serde_json::{Value, json};
@@ -31,21 +32,26 @@ const MOST_REFINEMENTS: u32 = 4;
 
 /// Solves one surface at one speed and keeps what it solved.
 pub(super) struct Curve<'a> {
-    rubber: &'a Rubber,
-    surface: &'a Surface,
-    speed_mm_s: f64,
+    grids: Grids<'a>,
+    kept: Kept<'a>,
     fewest_contact_points: f64,
     grid_tolerance: Option<f64>,
     /// Points of the one grid without a tolerance.
     base_points: usize,
     /// Points of the coarsest grid with one.
     first_points: usize,
+    solves: Vec<SolveRow>,
+}
+
+/// The contact of one surface at one speed on the grids that it is solved on.
+struct Grids<'a> {
+    rubber: &'a Rubber,
+    surface: &'a Surface,
+    speed_mm_s: f64,
     period: f64,
-    stored: Solves<'a>,
     interrupted: &'a Interrupt,
     /// Contacts by their number of grid points, set up when first needed.
     contacts: BTreeMap<usize, SlidingContact>,
-    solves: Vec<SolveRow>,
 }
 
 /// Fields of a contact at a wanted area.
@@ -65,25 +71,21 @@ impl<'a> Curve<'a> {
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
+        let (period, contacts) = (surface.period(), BTreeMap::new());
         Ok(Self {
-            rubber,
-            surface,
-            speed_mm_s,
+            grids: Grids { rubber, surface, speed_mm_s, period, interrupted, contacts },
+            kept: Kept::open(store, problem(rubber, surface, speed_mm_s), interrupted)?,
             fewest_contact_points: f64::from(parameters.fewest_contact_points),
             grid_tolerance: parameters.grid_tolerance,
             base_points: base_points(parameters, surface),
             first_points: points(surface, FIRST_POINTS_PER_WAVE),
-            period: surface.period(),
-            stored: store.problem(&problem(rubber, surface, speed_mm_s))?,
-            interrupted,
-            contacts: BTreeMap::new(),
             solves: Vec::new(),
         })
     }
 
     /// Notes that every solve of a task is stored.
     pub fn finish(&mut self, task: &Digest) -> Result<(), ArtifactError> {
-        self.stored.finish(task)
+        self.kept.finish(task)
     }
 
     /// Friction at the wanted areas, and the fields where they are wanted.
@@ -123,13 +125,14 @@ impl<'a> Curve<'a> {
     /// taken with the modulus at the frequency of the steepest wave. Only a start.
     fn first_guess(&self, area: f64) -> f64 {
         let slope = |wave: &wave::Wave| wave.amplitude / wave.wavelength;
-        let profile = &self.surface.profile;
+        let Grids { rubber, surface, speed_mm_s, .. } = &self.grids;
+        let profile = &surface.profile;
         let Some(steepest) = profile.iter().max_by(|a, b| slope(a).total_cmp(&slope(b))) else {
             return 1e5;
         };
-        let frequency = TAU / steepest.wavelength * self.speed_mm_s / 1e3;
+        let frequency = TAU / steepest.wavelength * speed_mm_s / 1e3;
         let rms_slope = profile.iter().map(|w| (TAU * slope(w)).powi(2) / 2.0).sum::<f64>().sqrt();
-        0.5 * area * self.rubber.reduced_modulus(frequency).norm() * rms_slope
+        0.5 * area * rubber.reduced_modulus(frequency).norm() * rms_slope
     }
 
     /// One pressure, on a grid that is fine enough for its contact.
@@ -192,21 +195,36 @@ impl<'a> Curve<'a> {
         point
     }
 
-    /// One solve, from the store if it is there.
+    /// One solve on so many grid points.
     fn solve(&mut self, pressure: f64, points: usize) -> Result<SolveRow, SolveError> {
-        if self.interrupted.is_set() {
-            return Err(SolveError::Interrupted);
-        }
-        let key = self.key(pressure, points);
-        if let Some(row) = self.stored.get::<SolveRow>(&key)? {
-            // The name of the approximation and the number of the realisation are no part of the
-            // problem, so the same surface may have been solved under others.
-            let (waves, realisation) = (self.surface.waves, self.surface.realisation);
-            return Ok(SolveRow { waves, realisation, ..row });
-        }
+        let Self { grids, kept, .. } = self;
+        let values = [("pressure", json!(pressure)), ("points", json!(points))];
+        let row = kept.take_or(&values, || grids.solve(pressure, points))?;
+        // The name of the approximation and the number of the realisation are no part of the
+        // problem, so the same surface may have been solved under others.
+        let (waves, realisation) = (grids.surface.waves, grids.surface.realisation);
+        Ok(SolveRow { waves, realisation, ..row })
+    }
+
+    fn field(&mut self, value: &CurveValue) -> Result<FieldSolution, SolveError> {
+        let points = self.base_points;
+        let grids = &mut self.grids;
+        let solution = grids.contact(points)?.solve(value.mean_pressure)?;
+        let area_fraction = value.contact_area_fraction;
+        let Surface { waves, realisation, .. } = grids.surface;
+        let group = format!(
+            "waves_{waves}/realisation_{realisation}/speed_{}_mm_s/area_{area_fraction}",
+            grids.speed_mm_s
+        );
+        Ok(FieldSolution { group, area_fraction, spacing: grids.period / points as f64, solution })
+    }
+}
+
+impl Grids<'_> {
+    fn solve(&mut self, pressure: f64, points: usize) -> Result<SolveRow, SolveError> {
         let start = Instant::now();
         let solution = self.contact(points)?.solve(pressure)?;
-        let row = SolveRow {
+        Ok(SolveRow {
             waves: self.surface.waves,
             realisation: self.surface.realisation,
             speed_mm_s: self.speed_mm_s,
@@ -220,9 +238,7 @@ impl<'a> Curve<'a> {
             iterations: solution.iterations as u64,
             grid_points: points as u64,
             seconds: start.elapsed().as_secs_f64(),
-        };
-        self.stored.put(&key, &row)?;
-        Ok(row)
+        })
     }
 
     fn contact(&mut self, points: usize) -> Result<&mut SlidingContact, SolveError> {
@@ -255,26 +271,6 @@ impl<'a> Curve<'a> {
             }
         }
     }
-
-    /// Digest of all that determines a solve.
-    fn key(&self, pressure: f64, points: usize) -> Digest {
-        let mut all = problem_parts(self.rubber, self.surface, self.speed_mm_s);
-        all["pressure"] = json!(pressure);
-        all["points"] = json!(points);
-        Digest::of_value(&all)
-    }
-
-    fn field(&mut self, value: &CurveValue) -> Result<FieldSolution, SolveError> {
-        let points = self.base_points;
-        let solution = self.contact(points)?.solve(value.mean_pressure)?;
-        let area_fraction = value.contact_area_fraction;
-        let Surface { waves, realisation, .. } = self.surface;
-        let group = format!(
-            "waves_{waves}/realisation_{realisation}/speed_{}_mm_s/area_{area_fraction}",
-            self.speed_mm_s
-        );
-        Ok(FieldSolution { group, area_fraction, spacing: self.period / points as f64, solution })
-    }
 }
 
 /// Points of the grid of a surface that all pressures are solved on, unless their contacts need more.
@@ -289,20 +285,12 @@ fn points(surface: &Surface, per_wave: u32) -> usize {
     ((f64::from(per_wave) * surface.period() / shortest).round() as usize).next_power_of_two()
 }
 
-/// Digest of what all solves of a curve have in common.
-pub(super) fn problem(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Digest {
-    Digest::of_value(&problem_parts(rubber, surface, speed_mm_s))
-}
-
-fn problem_parts(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Value {
-    json!({
-        "solver": ["bem", SOLVER_REVISION],
-        "equilibrium_modulus": rubber.equilibrium_modulus,
-        "branches": rubber.branches,
-        "poisson_ratio": rubber.poisson_ratio,
-        "profile": surface.profile,
-        "speed_mm_s": speed_mm_s,
-    })
+/// What all solves of a curve have in common.
+pub(super) fn problem(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Value {
+    let mut problem = kept::problem("bem", SOLVER_REVISION, rubber);
+    problem["profile"] = json!(surface.profile);
+    problem["speed_mm_s"] = json!(speed_mm_s);
+    problem
 }
 
 fn on_its_grid(row: &SolveRow) -> OnGrid {

@@ -14,10 +14,10 @@ const MOST_GROWTH: usize = 4;
 const LEAST_GROWTH: f64 = 0.1;
 
 /// The solves, the curve and the fields of one surface at one speed.
-pub(super) struct CurveResult {
+pub(crate) struct CurveResult {
     pub solves: Vec<SolveRow>,
     pub values: Vec<CurveRow>,
-    pub fields: Vec<FieldSolution>,
+    pub(super) fields: Vec<FieldSolution>,
 }
 
 /// One approximation at one speed.

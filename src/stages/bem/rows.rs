@@ -1,22 +1,22 @@
 //! What the stage writes.
 
-use crate::artifact::{ArraysSchema, AttributeSchema, DatasetSchema, Row, SchemaVersion};
-use crate::stages::schema_of;
+use crate::artifact::{
+    ArrayFile, ArraysSchema, AttributeSchema, DatasetSchema, ResultFile, Row, SchemaVersion, Table,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// All solves, of the waves that were not left out: `solves.arrow`.
-pub const SOLVES_FILE: &str = "solves.arrow";
+pub const SOLVES: Table<SolveRow> = Table::new("bem", "solves.arrow");
 /// Friction at the wanted contact areas: `curves.arrow`.
-pub const CURVES_FILE: &str = "curves.arrow";
+pub const CURVES: Table<CurveRow> = Table::new("bem", "curves.arrow");
 /// Pressure and separation on request: `fields.h5`.
-pub const FIELDS_FILE: &str = "fields.h5";
-/// Schema name of [`FIELDS_FILE`].
-pub const FIELDS_SCHEMA: &str = "asperity.bem.fields";
-/// Schema version of [`FIELDS_FILE`].
-pub const FIELDS_VERSION: u32 = 1;
-pub(super) const FIELDS_DESCRIPTION: &str =
-    "pressure and separation over one period of the profile";
+pub const FIELDS: ArrayFile = ArrayFile {
+    file: ResultFile { stage: "bem", name: "fields.h5" },
+    schema: "asperity.bem.fields",
+    version: 1,
+    description: "pressure and separation over one period of the profile",
+};
 
 /// One solved contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -103,7 +103,7 @@ impl Row for CurveRow {
 }
 
 /// How many realisations were solved, and of which waves: `realisations.arrow`.
-pub const REALISATIONS_FILE: &str = "realisations.arrow";
+pub const REALISATIONS: Table<RealisationsRow> = Table::new("bem", "realisations.arrow");
 
 /// What the average of one approximation at one speed rests on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -129,11 +129,10 @@ impl Row for RealisationsRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    let fields = SchemaVersion { schema: FIELDS_SCHEMA.into(), version: FIELDS_VERSION };
-    vec![schema_of::<SolveRow>(), schema_of::<CurveRow>(), schema_of::<RealisationsRow>(), fields]
+    vec![SOLVES.schema(), CURVES.schema(), REALISATIONS.schema(), FIELDS.schema()]
 }
 
-/// What [`FIELDS_FILE`] holds.
+/// What [`FIELDS`] holds.
 pub fn fields_schema() -> ArraysSchema {
     let attribute = |name, description| AttributeSchema { name, kind: "f64", description };
     let attributes = vec![
@@ -151,9 +150,9 @@ pub fn fields_schema() -> ArraysSchema {
         attributes: attributes.clone(),
     };
     ArraysSchema {
-        schema: FIELDS_SCHEMA,
-        version: FIELDS_VERSION,
-        description: FIELDS_DESCRIPTION,
+        schema: FIELDS.schema,
+        version: FIELDS.version,
+        description: FIELDS.description,
         datasets: vec![
             dataset(
                 "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",

@@ -1,12 +1,15 @@
 //! One curve as a task of a sweep, which any machine can solve.
 
-use super::curve::{base_points, problem};
-use super::work::Work;
-use super::{Bem, SolveRow};
-use crate::artifact::{ArtifactError, Digest, SolveStore};
+use super::curve::{Curve, base_points, problem};
+use super::ensemble::CurveResult;
+use super::{Bem, CurveRow};
+use crate::artifact::{Digest, SolveStore};
+use crate::contact::CurveValue;
+use crate::contact::curve::CurveError;
 use crate::rubber::Rubber;
+use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
-use crate::stages::{StageError, Watch};
+use crate::stages::{SolveError, StageError, Watch};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -19,26 +22,18 @@ pub struct Task {
     pub speed_mm_s: f64,
 }
 
-impl Task {
-    /// Digest of surface, rubber and speed: under which the solves are kept.
-    pub fn problem(&self, rubber: &Rubber) -> Digest {
-        problem(rubber, &self.surface, self.speed_mm_s)
+impl SolveTask for Task {
+    type Parameters = Bem;
+    type Output = CurveResult;
+
+    fn problem(&self, _: &Bem, rubber: &Rubber) -> Digest {
+        Digest::of_value(&problem(rubber, &self.surface, self.speed_mm_s))
     }
 
-    /// Digest of all that determines which solves the task asks for.
-    pub fn key(&self, parameters: &Bem, rubber: &Rubber) -> Digest {
-        Self::key_of(parameters, rubber, &self.surface, self.speed_mm_s)
-    }
-
-    pub(super) fn key_of(
-        parameters: &Bem,
-        rubber: &Rubber,
-        surface: &Surface,
-        speed_mm_s: f64,
-    ) -> Digest {
+    fn key(&self, parameters: &Bem, rubber: &Rubber) -> Digest {
         Digest::of_value(&json!({
             "stage": ["bem", super::REVISION],
-            "problem": problem(rubber, surface, speed_mm_s),
+            "problem": self.problem(parameters, rubber),
             "area_fractions": parameters.area_fractions,
             "tolerance": parameters.interpolation_tolerance(),
             "grid_tolerance": parameters.grid_tolerance,
@@ -48,36 +43,53 @@ impl Task {
         }))
     }
 
-    /// Whether a packed store has all solves of the task.
-    ///
-    /// # Errors
-    /// [`ArtifactError::Io`].
-    pub fn is_finished(
-        &self,
-        parameters: &Bem,
-        rubber: &Rubber,
-        store: &SolveStore,
-    ) -> Result<bool, ArtifactError> {
-        Ok(store.problem(&self.problem(rubber))?.is_finished(&self.key(parameters, rubber)))
+    fn name(&self) -> String {
+        self.surface.name_at("bem", self.speed_mm_s)
     }
 
-    /// Solves what a packed store does not have; returns all solves.
-    ///
-    /// # Errors
-    /// [`StageError::Contact`], [`StageError::Interrupted`], those of the store.
-    pub fn solve(
+    fn solve(
         &self,
         parameters: &Bem,
         rubber: &Rubber,
         store: &SolveStore,
         watch: Watch,
-    ) -> Result<Vec<SolveRow>, StageError> {
-        let work = Work::new(parameters, rubber, store, watch);
-        Ok(work.one_curve(&self.surface, self.speed_mm_s)?.solves)
+    ) -> Result<CurveResult, StageError> {
+        let Self { surface, speed_mm_s } = self;
+        let mut curve =
+            Curve::new(parameters, rubber, surface, *speed_mm_s, store, watch.interrupted)?;
+        let (values, fields) = curve.compute(parameters).map_err(|source| self.failed(source))?;
+        curve.finish(&self.key(parameters, rubber))?;
+        let row = |value: &CurveValue| CurveRow {
+            waves: surface.waves,
+            realisation: surface.realisation,
+            speed_mm_s: *speed_mm_s,
+            contact_area_fraction: value.contact_area_fraction,
+            pressure_mpa: value.mean_pressure / 1e6,
+            friction_coefficient: value.friction_coefficient,
+            interpolation_error: value.interpolation_error,
+            discretisation_error: value.discretisation_error,
+            left_out_error: 0.0,
+        };
+        let values = values.iter().map(row).collect();
+        Ok(CurveResult { solves: curve.into_solves(), values, fields })
     }
+}
 
+impl Task {
     /// Points of the grid that most pressures are solved on.
     pub fn grid_points(&self, parameters: &Bem) -> usize {
         base_points(parameters, &self.surface)
+    }
+
+    fn failed(&self, source: CurveError<SolveError>) -> StageError {
+        let (waves, realisation) = (self.surface.waves, self.surface.realisation);
+        let speed_mm_s = self.speed_mm_s;
+        let contact = |source| StageError::Contact { waves, realisation, speed_mm_s, source };
+        match source {
+            CurveError::Solve(error) => {
+                error.in_stage(|error| contact(Box::new(CurveError::Solve(*error))))
+            }
+            source => contact(Box::new(source)),
+        }
     }
 }

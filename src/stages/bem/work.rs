@@ -1,17 +1,14 @@
 //! The curves of all ensembles: those that are missing, solved side by side.
 
-use super::curve::Curve;
 use super::ensemble::{CurveResult, Ensemble};
 use super::reduction::LeftOut;
 use super::{Bem, CurveRow, Task};
 use crate::artifact::SolveStore;
-use crate::contact::CurveValue;
-use crate::contact::curve::CurveError;
 use crate::rubber::Rubber;
+use crate::stages::kept::{SolveTask, Tally};
 use crate::stages::realise::Surface;
 use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What the curves are made of.
 pub(super) struct Work<'a> {
@@ -19,7 +16,7 @@ pub(super) struct Work<'a> {
     rubber: &'a Rubber,
     store: &'a SolveStore,
     watch: Watch<'a>,
-    done: AtomicU64,
+    tally: Tally<'a>,
 }
 
 impl<'a> Work<'a> {
@@ -29,7 +26,7 @@ impl<'a> Work<'a> {
         store: &'a SolveStore,
         watch: Watch<'a>,
     ) -> Self {
-        Self { parameters, rubber, store, watch, done: AtomicU64::new(0) }
+        Self { parameters, rubber, store, watch, tally: Tally::new(watch) }
     }
 
     /// Solves the curves of all ensembles, as many as their averages need.
@@ -77,20 +74,13 @@ impl<'a> Work<'a> {
     /// Solves all curves that are wanted, side by side.
     fn solve_open(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
         let total: usize = ensembles.iter().map(|ensemble| ensemble.wanted).sum();
-        (self.watch.progress)(self.done.load(Ordering::Relaxed), total as u64);
         let tasks: Vec<(&Ensemble, &Surface)> = ensembles
             .iter()
             .flat_map(|ensemble| ensemble.open().iter().map(move |surface| (ensemble, surface)))
             .collect();
-        let results: Vec<CurveResult> = tasks
-            .par_iter()
-            .map(|(ensemble, surface)| {
-                self.watch.check_interrupt()?;
-                let result = self.of_family(ensemble, surface)?;
-                (self.watch.progress)(1 + self.done.fetch_add(1, Ordering::Relaxed), total as u64);
-                Ok(result)
-            })
-            .collect::<Result<_, StageError>>()?;
+        let solve =
+            |&(ensemble, surface): &(&Ensemble, &Surface)| self.of_ensemble(ensemble, surface);
+        let results: Vec<CurveResult> = self.tally.side_by_side(&tasks, total as u64, solve)?;
         let mut results = results.into_iter();
         for ensemble in ensembles {
             let count = ensemble.open().len();
@@ -99,8 +89,12 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The curve of one surface of a ensemble, without the waves that the ensemble leaves out of it.
-    fn of_family(&self, ensemble: &Ensemble, surface: &Surface) -> Result<CurveResult, StageError> {
+    /// The curve of one surface of an ensemble, without the waves that the ensemble leaves out of it.
+    fn of_ensemble(
+        &self,
+        ensemble: &Ensemble,
+        surface: &Surface,
+    ) -> Result<CurveResult, StageError> {
         let mut result = self.one_curve(&ensemble.to_solve(surface), ensemble.speed_mm_s)?;
         if !ensemble.with_all_waves_of(surface) {
             ensemble.left_out.complete(self.rubber, surface, &mut result.values);
@@ -108,7 +102,7 @@ impl<'a> Work<'a> {
         Ok(result)
     }
 
-    /// How many realisations a ensemble needs; if many more, which waves they can do without.
+    /// How many realisations an ensemble needs; if many more, which waves they can do without.
     fn extend(&self, ensemble: &mut Ensemble, tolerance: f64) -> Result<(), StageError> {
         let solved = ensemble.results.len();
         ensemble.extend(tolerance);
@@ -135,32 +129,7 @@ impl<'a> Work<'a> {
     }
 
     pub fn one_curve(&self, surface: &Surface, speed_mm_s: f64) -> Result<CurveResult, StageError> {
-        let Self { parameters, rubber, store, watch, .. } = *self;
-        let mut curve =
-            Curve::new(parameters, rubber, surface, speed_mm_s, store, watch.interrupted)?;
-        let (values, fields) = curve.compute(parameters).map_err(|source| {
-            let (waves, realisation) = (surface.waves, surface.realisation);
-            let contact = |source| StageError::Contact { waves, realisation, speed_mm_s, source };
-            match source {
-                CurveError::Solve(error) => {
-                    error.in_stage(|error| contact(Box::new(CurveError::Solve(*error))))
-                }
-                source => contact(Box::new(source)),
-            }
-        })?;
-        curve.finish(&Task::key_of(parameters, rubber, surface, speed_mm_s))?;
-        let row = |value: &CurveValue| CurveRow {
-            waves: surface.waves,
-            realisation: surface.realisation,
-            speed_mm_s,
-            contact_area_fraction: value.contact_area_fraction,
-            pressure_mpa: value.mean_pressure / 1e6,
-            friction_coefficient: value.friction_coefficient,
-            interpolation_error: value.interpolation_error,
-            discretisation_error: value.discretisation_error,
-            left_out_error: 0.0,
-        };
-        let values = values.iter().map(row).collect();
-        Ok(CurveResult { solves: curve.into_solves(), values, fields })
+        let task = Task { surface: surface.clone(), speed_mm_s };
+        task.solve(self.parameters, self.rubber, self.store, self.watch)
     }
 }

@@ -2,7 +2,7 @@
 //! against the correlation.
 
 use super::{AVERAGE, Characterise, SelfAffineRow, finite, warnings};
-use crate::artifact::{Metadata, Row};
+use crate::artifact::{Metadata, Row, Table};
 use crate::surface::spectrum::{
     Agreement, PowerSpectrum, Route, SpectrumBin, abel_inverse, agreement, fit_hurst_exponent,
     self_affine_isotropic,
@@ -13,14 +13,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Spectrum in log-spaced bins, per window and averaged: `spectrum.arrow`.
-pub const SPECTRUM_FILE: &str = "spectrum.arrow";
+pub const SPECTRUM: Table<SpectrumRow> = Table::new("characterise", "spectrum.arrow");
 /// Spectrum of an isotropic surface with the averaged line spectrum: `isotropic_spectrum.arrow`.
-pub const ISOTROPIC_FILE: &str = "isotropic_spectrum.arrow";
+pub const ISOTROPIC: Table<IsotropicRow> = Table::new("characterise", "isotropic_spectrum.arrow");
 /// Hurst exponents of correlation and spectrum, per window and averaged: `hurst.arrow`.
-pub const HURST_FILE: &str = "hurst.arrow";
+pub const HURST: Table<HurstRow> = Table::new("characterise", "hurst.arrow");
 /// The averaged correlation beside that of the averaged spectrum: `agreement.arrow`.
-pub const AGREEMENT_FILE: &str = "agreement.arrow";
-/// Metadata of [`AGREEMENT_FILE`]: the largest relative difference.
+pub const AGREEMENT: Table<AgreementRow> = Table::new("characterise", "agreement.arrow");
+/// Metadata of [`AGREEMENT`]: the largest relative difference.
 pub const LARGEST_DIFFERENCE_KEY: &str = "largest_relative_difference";
 
 /// Relative difference of correlation and spectrum beyond which a run warns: some per cent are what

@@ -2,7 +2,7 @@
 
 use super::warnings::left_out;
 use super::{AVERAGE, Characterise, require_ascending};
-use crate::artifact::Row;
+use crate::artifact::{Row, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::filter::{ProfileFilter, waviness};
 use crate::surface::profile::{ProfileParameters, profile_parameters};
@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Profile parameters of each window: `profile_parameters.arrow`.
-pub const PROFILE_FILE: &str = "profile_parameters.arrow";
+pub const PROFILE: Table<ProfileRow> = Table::new("characterise", "profile_parameters.arrow");
 /// Mean profile depths of the segments: `profile_depth.arrow`.
-pub const DEPTH_FILE: &str = "profile_depth.arrow";
+pub const DEPTH: Table<DepthRow> = Table::new("characterise", "profile_depth.arrow");
 /// Texture levels in third-octave bands, per window and averaged: `texture.arrow`.
-pub const TEXTURE_FILE: &str = "texture.arrow";
+pub const TEXTURE: Table<TextureRow> = Table::new("characterise", "texture.arrow");
 
 /// Sections in a window where the recipe gives neither their length nor a cut-off, as in the
 /// default evaluation length of the standards.

@@ -1,18 +1,17 @@
 //! One curve of friction over contact area: one surface at one speed, solved along its pressures.
 
 use super::{Fem, FemCurveRow, FemSolveRow};
-use crate::artifact::{ArtifactError, Digest, SolveStore, Solves};
-use crate::fem::error::{FemError, PathEnd};
+use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::fem::error::FemError;
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
 use crate::numerics::interpolation::CubicHermite;
 use crate::rubber::{Rheology, Rubber};
+use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, Watch};
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use std::time::Instant;
 
 /// Revision of the solver: part of the key of every stored solve.
 const SOLVER_REVISION: u32 = 7;
@@ -24,27 +23,16 @@ pub(crate) struct CurveResult {
     pub warnings: Vec<String>,
 }
 
-/// What the store has of a pressure. That there is no solution is kept like one: it takes longer to find out.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-enum Stored {
-    Solved(FemSolveRow),
-    Refused { refused: PathEnd },
-}
+/// Sets up the contact at finite deformation.
+type SetUp<'a> = Box<dyn Fn() -> Result<SteadyContact, FemError> + 'a>;
 
 /// One surface at one speed.
 pub(super) struct Solver<'a> {
     surface: &'a Surface,
     speed_mm_s: f64,
     columns: usize,
-    key: Value,
-    block: SteadyContact,
     ratio: f64,
-    stored: Solves<'a>,
-    watch: Watch<'a>,
-    /// Pressures in Pa that the store knew and the block did not pass. It passes them before it goes
-    /// on, so that a run that was stopped gives the numbers of one that was not.
-    skipped: Vec<f64>,
+    path: KeptPath<'a, SetUp<'a>>,
     /// Of ascending pressure.
     solves: Vec<FemSolveRow>,
 }
@@ -59,30 +47,29 @@ impl<'a> Solver<'a> {
     pub fn new(
         columns: usize,
         parameters: &Fem,
-        rubber: &Rubber,
+        rubber: &'a Rubber,
         surface: &'a Surface,
         speed_mm_s: f64,
         store: &'a SolveStore,
         watch: Watch<'a>,
     ) -> Result<Self, SolveError> {
-        let waves = &surface.profile;
-        let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let profile = RigidProfile::from_waves(waves, period);
-        let options = BlockOptions::of_profile(columns, &profile);
-        let rheology = Rheology::NeoHookean;
-        let block = SteadyContact::new(rubber, rheology, speed_mm_s / 1e3, profile, options)?
-            .interruptible(watch.interrupted);
-        let key = problem_parts(rubber, surface, speed_mm_s, columns);
+        let interrupted = watch.interrupted;
+        let problem = problem(rubber, surface, speed_mm_s, columns);
+        let kept = Kept::open(store, problem, interrupted)?;
+        let set_up: SetUp = Box::new(move || {
+            let waves = &surface.profile;
+            let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+            let profile = RigidProfile::from_waves(waves, period);
+            let options = BlockOptions::of_profile(columns, &profile);
+            let (law, speed) = (Rheology::NeoHookean, speed_mm_s / 1e3);
+            Ok(SteadyContact::new(rubber, law, speed, profile, options)?.interruptible(interrupted))
+        });
         Ok(Self {
             surface,
             speed_mm_s,
             columns,
-            stored: store.problem(&Digest::of_value(&key))?,
-            key,
-            block,
             ratio: parameters.pressure_ratio,
-            watch,
-            skipped: Vec::new(),
+            path: KeptPath::new(kept, columns, set_up),
             solves: Vec::new(),
         })
     }
@@ -178,68 +165,31 @@ impl<'a> Solver<'a> {
     }
 
     fn point(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
-        if self.watch.check_interrupt().is_err() {
-            return Err(SolveError::Interrupted);
-        }
-        self.key["pressure"] = json!(pressure);
-        let key = Digest::of_value(&self.key);
-        let (waves, realisation) = (self.surface.waves, self.surface.realisation);
-        let row = match self.stored.get(&key)? {
-            Some(Stored::Solved(row)) => {
-                self.skipped.push(pressure);
-                FemSolveRow { waves, realisation, ..row }
-            }
-            Some(Stored::Refused { refused: reached }) => {
-                if !self.block.refusals_leave_no_trace() {
-                    self.skipped.push(pressure);
-                }
-                let (wanted, columns) = (pressure, self.columns);
-                return Err(FemError::PathEnded { wanted, columns, reached }.into());
-            }
-            None => match self.solve(pressure) {
-                Ok(row) => {
-                    self.stored.put(&key, &row)?;
-                    row
-                }
-                Err(error) => {
-                    if let SolveError::FiniteDeformation(FemError::PathEnded { reached, .. }) =
-                        error
-                    {
-                        self.stored.put(&key, &Stored::Refused { refused: reached })?;
-                    }
-                    return Err(error);
-                }
-            },
-        };
+        let Self { surface, speed_mm_s, columns, path, .. } = self;
+        let (waves, realisation) = (surface.waves, surface.realisation);
+        let row = path.at(pressure, |solution, seconds| {
+            let coarser = solution.coarser;
+            Ok(FemSolveRow {
+                waves,
+                realisation,
+                speed_mm_s: *speed_mm_s,
+                pressure_mpa: pressure / 1e6,
+                friction_coefficient: solution.friction_coefficient,
+                friction_from_heat: solution.hysteretic_friction,
+                contact_area_fraction: solution.contact_area_fraction,
+                mean_separation_mm: solution.mean_separation * 1e3,
+                coarser_friction_coefficient: coarser.map(|half| half.friction_coefficient),
+                coarser_contact_area_fraction: coarser.map(|half| half.contact_area_fraction),
+                residual: solution.residual,
+                newton_steps: solution.newton_steps as u64,
+                columns: *columns as u64,
+                seconds,
+            })
+        })?;
+        // The same surface may have been solved under another name.
+        let row = FemSolveRow { waves, realisation, ..row };
         self.solves.push(row.clone());
         Ok(row)
-    }
-
-    fn solve(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
-        for skipped in std::mem::take(&mut self.skipped) {
-            match self.block.solve(skipped) {
-                Ok(_) | Err(FemError::PathEnded { .. }) => {}
-                Err(error) => return Err(error.into()),
-            }
-        }
-        let start = Instant::now();
-        let solution = self.block.solve(pressure)?;
-        Ok(FemSolveRow {
-            waves: self.surface.waves,
-            realisation: self.surface.realisation,
-            speed_mm_s: self.speed_mm_s,
-            pressure_mpa: pressure / 1e6,
-            friction_coefficient: solution.friction_coefficient,
-            friction_from_heat: solution.hysteretic_friction,
-            contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
-            coarser_friction_coefficient: solution.coarser.map(|half| half.friction_coefficient),
-            coarser_contact_area_fraction: solution.coarser.map(|half| half.contact_area_fraction),
-            residual: solution.residual,
-            newton_steps: solution.newton_steps as u64,
-            columns: self.columns as u64,
-            seconds: start.elapsed().as_secs_f64(),
-        })
     }
 
     /// All solves by ascending pressure.
@@ -249,7 +199,7 @@ impl<'a> Solver<'a> {
 
     /// Notes that every solve of a task is stored.
     pub fn finish(&mut self, task: &Digest) -> Result<(), ArtifactError> {
-        self.stored.finish(task)
+        self.path.finish(task)
     }
 }
 
@@ -303,31 +253,24 @@ fn values_at(
     areas.iter().filter(|area| (*first..=*last).contains(*area)).map(row).collect()
 }
 
-/// Digest of what all solves of a curve have in common.
+/// What all solves of a curve have in common.
 pub(super) fn problem(
     rubber: &Rubber,
     surface: &Surface,
     speed_mm_s: f64,
     columns: usize,
-) -> Digest {
-    Digest::of_value(&problem_parts(rubber, surface, speed_mm_s, columns))
-}
-
-fn problem_parts(rubber: &Rubber, surface: &Surface, speed_mm_s: f64, columns: usize) -> Value {
-    json!({
-        "solver": ["fem", SOLVER_REVISION],
-        "equilibrium_modulus": rubber.equilibrium_modulus,
-        "branches": rubber.branches,
-        "poisson_ratio": rubber.poisson_ratio,
-        "profile": surface.profile,
-        "speed_mm_s": speed_mm_s,
-        "columns": columns,
-    })
+) -> Value {
+    let mut problem = kept::problem("fem", SOLVER_REVISION, rubber);
+    problem["profile"] = json!(surface.profile);
+    problem["speed_mm_s"] = json!(speed_mm_s);
+    problem["columns"] = json!(columns);
+    problem
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fem::error::PathEnd;
     use crate::numerics::Interrupt;
     use crate::surface::Wave;
 
@@ -377,11 +320,10 @@ mod tests {
         let reached = refused(solver(), hopeless);
         assert_eq!(refused(solver(), hopeless), reached);
         // The store is believed: it says so of a pressure that has a solution.
-        let mut solver_of_note = solver();
-        solver_of_note.key["pressure"] = json!(1e4);
-        let key = Digest::of_value(&solver_of_note.key);
-        let refusal = Stored::Refused { refused: PathEnd::NotGrown };
-        solver_of_note.stored.put(&key, &refusal).unwrap();
+        let mut key = problem(&rubber, &surface, 10.0, 16);
+        key["pressure"] = json!(1e4);
+        let refusal = json!({ "refused": PathEnd::NotGrown });
+        store.put(&Digest::of_value(&key), &refusal).unwrap();
         assert_eq!(refused(solver(), 1e4), PathEnd::NotGrown);
         // And goes on behind one.
         let mut behind = solver();

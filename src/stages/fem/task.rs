@@ -2,13 +2,14 @@
 
 use super::curve::{CurveResult, Solver, problem};
 use super::{Fem, FemCurveRow};
-use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::artifact::{Digest, SolveStore};
 use crate::fem::cost::MeshCost;
 use crate::fem::error::FemError;
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::rubber::Rubber;
 use crate::stages::bem::{Bem, CurveRow};
+use crate::stages::kept::SolveTask;
 use crate::stages::micro::{columns, is_of};
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError, Watch};
@@ -24,6 +25,15 @@ pub struct Task {
     pub speed_mm_s: f64,
     /// Pressure in Pa of the smallest wanted area on the half-space: where the sweep begins.
     pub first_guess: f64,
+}
+
+/// How a curve is swept: the sections of a recipe, or what stands for them.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Mesh and steps of pressure.
+    pub fem: Fem,
+    /// Contact area fractions at which friction is wanted, ascending.
+    pub area_fractions: Vec<f64>,
 }
 
 /// The surfaces and speeds that the half-space has curves of, as far as they are wanted.
@@ -47,67 +57,38 @@ pub(super) fn tasks(
     tasks
 }
 
-impl Task {
-    /// Digest of surface, rubber, speed and mesh: under which the solves are kept.
-    pub fn problem(&self, parameters: &Fem, rubber: &Rubber) -> Digest {
-        problem(rubber, &self.surface, self.speed_mm_s, self.columns(parameters))
+impl SolveTask for Task {
+    type Parameters = Sweep;
+    type Output = CurveResult;
+
+    fn problem(&self, parameters: &Sweep, rubber: &Rubber) -> Digest {
+        let columns = self.columns(&parameters.fem);
+        Digest::of_value(&problem(rubber, &self.surface, self.speed_mm_s, columns))
     }
 
-    /// Digest of all that determines which solves the task asks for.
-    pub fn key(&self, parameters: &Fem, area_fractions: &[f64], rubber: &Rubber) -> Digest {
+    fn key(&self, parameters: &Sweep, rubber: &Rubber) -> Digest {
         Digest::of_value(&json!({
             "stage": ["fem", super::REVISION],
             "problem": self.problem(parameters, rubber),
-            "parameters": parameters,
-            "area_fractions": area_fractions,
+            "parameters": parameters.fem,
+            "area_fractions": parameters.area_fractions,
             "first_guess": self.first_guess,
         }))
     }
 
-    /// Elements over the period of the surface.
-    pub fn columns(&self, parameters: &Fem) -> usize {
-        columns_of(parameters, &self.surface)
+    fn name(&self) -> String {
+        self.surface.name_at("fem", self.speed_mm_s)
     }
 
-    /// Whether a packed store has all solves of the task.
-    ///
-    /// # Errors
-    /// [`ArtifactError::Io`].
-    pub fn is_finished(
+    fn solve(
         &self,
-        parameters: &Fem,
-        area_fractions: &[f64],
-        rubber: &Rubber,
-        store: &SolveStore,
-    ) -> Result<bool, ArtifactError> {
-        let solves = store.problem(&self.problem(parameters, rubber))?;
-        Ok(solves.is_finished(&self.key(parameters, area_fractions, rubber)))
-    }
-
-    /// Solves what a packed store does not have.
-    ///
-    /// # Errors
-    /// [`StageError::FiniteDeformation`], [`StageError::Interrupted`], those of the store.
-    pub fn solve(
-        &self,
-        parameters: &Fem,
-        area_fractions: &[f64],
-        rubber: &Rubber,
-        store: &SolveStore,
-        watch: Watch,
-    ) -> Result<(), StageError> {
-        self.curve(parameters, area_fractions, rubber, store, watch).map(drop)
-    }
-
-    pub(super) fn curve(
-        &self,
-        parameters: &Fem,
-        area_fractions: &[f64],
+        parameters: &Sweep,
         rubber: &Rubber,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<CurveResult, StageError> {
         let Self { surface, speed_mm_s, first_guess } = self;
+        let Sweep { fem, area_fractions } = parameters;
         let (waves, realisation) = (surface.waves, surface.realisation);
         let failed = |source: SolveError| {
             let speed_mm_s = *speed_mm_s;
@@ -118,9 +99,8 @@ impl Task {
                 source,
             })
         };
-        let columns = self.columns(parameters);
-        let new =
-            |columns| Solver::new(columns, parameters, rubber, surface, *speed_mm_s, store, watch);
+        let columns = self.columns(fem);
+        let new = |columns| Solver::new(columns, fem, rubber, surface, *speed_mm_s, store, watch);
         let mut solver = new(columns).map_err(failed)?;
         let ended = match solver.sweep(area_fractions, *first_guess) {
             Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => Some(error),
@@ -129,7 +109,7 @@ impl Task {
         let mut rows = solver.values(area_fractions);
         if let Some(coarser) = solver.coarser_values(area_fractions) {
             add_mesh_errors(&mut rows, &coarser);
-        } else if parameters.estimate_mesh_error {
+        } else if fem.estimate_mesh_error {
             let mut coarser = new((columns / 2).max(*COLUMNS_RANGE.start())).map_err(failed)?;
             match coarser.sweep(area_fractions, *first_guess) {
                 Ok(_) | Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
@@ -137,7 +117,7 @@ impl Task {
             }
             add_mesh_errors(&mut rows, &coarser.values(area_fractions));
         }
-        solver.finish(&self.key(parameters, area_fractions, rubber))?;
+        solver.finish(&self.key(parameters, rubber))?;
         let missing = area_fractions.len() - rows.len();
         let warning = (missing > 0).then(|| {
             let why = ended.map_or_else(
@@ -152,6 +132,13 @@ impl Task {
         let coarse = solver.coarse_mesh();
         let warnings = warning.into_iter().chain(coarse).collect();
         Ok(CurveResult { rows, solves: solver.into_solves(), warnings })
+    }
+}
+
+impl Task {
+    /// Elements over the period of the surface.
+    pub fn columns(&self, parameters: &Fem) -> usize {
+        columns_of(parameters, &self.surface)
     }
 }
 

@@ -1,12 +1,12 @@
 //! The table of the faults of the scans.
 
-use crate::artifact::Row;
+use crate::artifact::{Row, Table};
 use crate::surface::ConditioningReport;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What was found wrong in each scan and what it meant: `faults.arrow`.
-pub const FAULTS_FILE: &str = "faults.arrow";
+pub const FAULTS: Table<FaultRow> = Table::new("ingest", "faults.arrow");
 
 /// One kind of fault in one scan, at the spacing of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,7 +1,7 @@
 //! One microscale at one speed, sampled as densely as the tolerance needs.
 
 use super::{COLUMNS_KEY, LawRow, Micro, Owner, SampleRow, Task};
-use crate::artifact::{ArtifactError, Digest, SolveStore, Solves};
+use crate::artifact::{ArtifactError, Digest, SolveStore};
 use crate::contact::{ContactSolution, SlidingContact};
 use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
@@ -11,9 +11,9 @@ use crate::multiscale::{LawEnd, LocalLaw};
 use crate::numerics::Interrupt;
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
+use crate::stages::kept::{self, Kept, KeptPath};
 use crate::surface::wave;
 use serde_json::{Value, json};
-use std::time::Instant;
 
 /// Revision of the solvers: part of the key of every stored solve.
 const SOLVER_REVISION: u32 = 6;
@@ -36,15 +36,23 @@ pub(super) struct MicroCurve<'a> {
     rubber: &'a Rubber,
     task: &'a Task,
     store: &'a SolveStore,
-    stored: Solves<'a>,
     interrupted: &'a Interrupt,
-    period: f64,
     columns: usize,
-    half_space: Option<SlidingContact>,
-    block: Option<SteadyContact>,
-    /// Pressures in Pa that the store knew and the block did not pass. It passes them before it goes
-    /// on, so that a run that was stopped gives the numbers of one that was not.
-    skipped: Vec<f64>,
+    half_space: HalfSpace<'a>,
+    path: KeptPath<'a, SetUp<'a>>,
+}
+
+/// Sets up the contact at finite deformation.
+type SetUp<'a> = Box<dyn Fn() -> Result<SteadyContact, FemError> + 'a>;
+
+/// The microscale on the half-space.
+struct HalfSpace<'a> {
+    rubber: &'a Rubber,
+    task: &'a Task,
+    period: f64,
+    interrupted: &'a Interrupt,
+    /// Set up when first needed.
+    contact: Option<SlidingContact>,
 }
 
 impl<'a> MicroCurve<'a> {
@@ -67,33 +75,42 @@ impl<'a> MicroCurve<'a> {
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
-        let stored = store.problem(&problem(parameters, rubber, task, columns))?;
+        let period = task.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let kept = Kept::open(store, problem(parameters, rubber, task, columns), interrupted)?;
+        let set_up: SetUp = Box::new(move || {
+            let profile = RigidProfile::from_waves(&task.micro, period);
+            let options = BlockOptions::of_profile(columns, &profile);
+            let (law, speed) = (Rheology::NeoHookean, task.speed_mm_s / 1e3);
+            let contact = SteadyContact::new(rubber, law, speed, profile, options)?;
+            let contact = match parameters.contact_length_mm {
+                Some(length) => contact.lasting(length / 1e3),
+                None => contact,
+            };
+            Ok(contact.interruptible(interrupted))
+        });
         Ok(Self {
             parameters,
             rubber,
             task,
             store,
-            stored,
             interrupted,
-            period: task.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max),
             columns,
-            half_space: None,
-            block: None,
-            skipped: Vec::new(),
+            half_space: HalfSpace { rubber, task, period, interrupted, contact: None },
+            path: KeptPath::new(kept, columns, set_up),
         })
     }
 
     /// Notes that every sample of a task is stored.
     pub fn finish(&mut self, task: &Digest) -> Result<(), ArtifactError> {
-        self.stored.finish(task)
+        self.path.finish(task)
     }
 
     /// The repulsive law of the half-space up to full contact.
     pub fn law(&mut self) -> Result<(LocalLaw, Vec<LawRow>), SolveError> {
-        let heights = self.heights();
+        let heights = self.half_space.heights();
         let touch_separation_m = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
             - heights.iter().sum::<f64>() / heights.len() as f64;
-        let full = self.half_space()?.full_contact_limit();
+        let full = self.half_space.contact()?.full_contact_limit();
         let (Owner { waves, realisation }, speed_mm_s) =
             (self.task.owners[0], self.task.speed_mm_s);
         let mut rows = Vec::with_capacity(LAW_SAMPLES);
@@ -101,7 +118,7 @@ impl<'a> MicroCurve<'a> {
             let t = k as f64 / (LAW_SAMPLES - 1) as f64;
             let pressure_pa = full * (0.1 + 0.9 * t).powi(4);
             let separation_m = if k + 1 < LAW_SAMPLES {
-                self.half_space_at(pressure_pa)?.mean_separation
+                self.half_space.at(pressure_pa)?.mean_separation
             } else {
                 0.0
             };
@@ -228,12 +245,12 @@ impl<'a> MicroCurve<'a> {
     fn first_pressure(&mut self, largest: f64) -> Result<f64, SolveError> {
         let wanted = FEWEST_CONTACT_ELEMENTS / self.columns as f64;
         let (mut low, mut high) = (1e-6 * largest, largest);
-        if self.half_space_at(high)?.contact_area_fraction <= wanted {
+        if self.half_space.at(high)?.contact_area_fraction <= wanted {
             return Ok(largest);
         }
         while high > 1.02 * low {
             let middle = (low * high).sqrt();
-            if self.half_space_at(middle)?.contact_area_fraction < wanted {
+            if self.half_space.at(middle)?.contact_area_fraction < wanted {
                 low = middle;
             } else {
                 high = middle;
@@ -243,44 +260,36 @@ impl<'a> MicroCurve<'a> {
     }
 
     fn row(&mut self, pressure: f64) -> Result<SampleRow, SolveError> {
-        if self.interrupted.is_set() {
-            return Err(SolveError::Interrupted);
-        }
         let (Owner { waves, realisation }, speed_mm_s) =
             (self.task.owners[0], self.task.speed_mm_s);
-        let key = self.key(pressure);
-        if let Some(row) = self.stored.get::<SampleRow>(&key)? {
-            self.skipped.push(pressure);
-            return Ok(SampleRow { waves, realisation, ..row });
-        }
-        let half_space = self.half_space_at(pressure)?;
-        for skipped in std::mem::take(&mut self.skipped) {
-            self.block()?.solve(skipped)?;
-        }
-        let start = Instant::now();
-        let block = self.block()?.solve(pressure)?;
-        let row = SampleRow {
-            waves,
-            realisation,
-            speed_mm_s,
-            pressure_mpa: pressure / 1e6,
-            friction_half_space: half_space.friction_coefficient,
-            friction_finite_deformation: block.friction_coefficient,
-            friction_from_heat: block.hysteretic_friction,
-            area_half_space: half_space.contact_area_fraction,
-            area_finite_deformation: block.contact_area_fraction,
-            separation_half_space_mm: half_space.mean_separation * 1e3,
-            separation_finite_deformation_mm: block.mean_separation * 1e3,
-            interpolation_error: 0.0,
-            discretisation_error: None,
-            residual: block.residual,
-            newton_steps: block.newton_steps as u64,
-            seconds: start.elapsed().as_secs_f64(),
-        };
-        self.stored.put(&key, &row)?;
-        Ok(row)
+        let half_space = &mut self.half_space;
+        let row = self.path.at(pressure, |finite, seconds| {
+            let half_space = half_space.at(pressure)?;
+            Ok(SampleRow {
+                waves,
+                realisation,
+                speed_mm_s,
+                pressure_mpa: pressure / 1e6,
+                friction_half_space: half_space.friction_coefficient,
+                friction_finite_deformation: finite.friction_coefficient,
+                friction_from_heat: finite.hysteretic_friction,
+                area_half_space: half_space.contact_area_fraction,
+                area_finite_deformation: finite.contact_area_fraction,
+                separation_half_space_mm: half_space.mean_separation * 1e3,
+                separation_finite_deformation_mm: finite.mean_separation * 1e3,
+                interpolation_error: 0.0,
+                discretisation_error: None,
+                residual: finite.residual,
+                newton_steps: finite.newton_steps as u64,
+                seconds,
+            })
+        })?;
+        // Another approximation may have the same microscale.
+        Ok(SampleRow { waves, realisation, ..row })
     }
+}
 
+impl HalfSpace<'_> {
     fn heights(&self) -> Vec<f64> {
         let shortest = self.task.micro.iter().map(|wave| wave.wavelength);
         let shortest = shortest.fold(self.period, f64::min);
@@ -288,74 +297,33 @@ impl<'a> MicroCurve<'a> {
         wave::sample(&self.task.micro, self.period, points.next_power_of_two())
     }
 
-    fn half_space(&mut self) -> Result<&mut SlidingContact, SolveError> {
-        let contact = match self.half_space.take() {
+    fn contact(&mut self) -> Result<&mut SlidingContact, SolveError> {
+        let contact = match self.contact.take() {
             Some(contact) => contact,
             None => {
-                let speed = self.task.speed_mm_s / 1e3;
-                let heights = self.heights();
-                SlidingContact::new_interruptible(
-                    self.rubber,
-                    speed,
-                    self.period,
-                    &heights,
-                    self.interrupted,
-                )?
+                let (speed, heights) = (self.task.speed_mm_s / 1e3, self.heights());
+                let Self { rubber, period, interrupted, .. } = *self;
+                SlidingContact::new_interruptible(rubber, speed, period, &heights, interrupted)?
             }
         };
-        Ok(self.half_space.insert(contact))
+        Ok(self.contact.insert(contact))
     }
 
-    fn half_space_at(&mut self, pressure: f64) -> Result<ContactSolution, SolveError> {
-        Ok(self.half_space()?.solve(pressure)?)
-    }
-
-    fn block(&mut self) -> Result<&mut SteadyContact, SolveError> {
-        let block = match self.block.take() {
-            Some(block) => block,
-            None => {
-                let speed = self.task.speed_mm_s / 1e3;
-                let profile = RigidProfile::from_waves(&self.task.micro, self.period);
-                let options = BlockOptions::of_profile(self.columns, &profile);
-                let law = Rheology::NeoHookean;
-                let block = SteadyContact::new(self.rubber, law, speed, profile, options)?;
-                let block = match self.parameters.contact_length_mm {
-                    Some(length) => block.lasting(length / 1e3),
-                    None => block,
-                };
-                block.interruptible(self.interrupted)
-            }
-        };
-        Ok(self.block.insert(block))
-    }
-
-    /// Digest of all that determines a sample.
-    fn key(&self, pressure: f64) -> Digest {
-        let mut all = problem_parts(self.parameters, self.rubber, self.task, self.columns);
-        all["pressure"] = json!(pressure);
-        Digest::of_value(&all)
+    fn at(&mut self, pressure: f64) -> Result<ContactSolution, SolveError> {
+        Ok(self.contact()?.solve(pressure)?)
     }
 }
 
-/// Digest of what all samples of a microscale have in common.
-pub(super) fn problem(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Digest {
-    Digest::of_value(&problem_parts(parameters, rubber, task, columns))
-}
-
-fn problem_parts(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Value {
-    let mut parts = json!({
-        "solver": ["micro", SOLVER_REVISION],
-        "equilibrium_modulus": rubber.equilibrium_modulus,
-        "branches": rubber.branches,
-        "poisson_ratio": rubber.poisson_ratio,
-        "profile": task.micro,
-        "speed_mm_s": task.speed_mm_s,
-        "columns": columns,
-    });
+/// What all samples of a microscale have in common.
+pub(super) fn problem(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Value {
+    let mut problem = kept::problem("micro", SOLVER_REVISION, rubber);
+    problem["profile"] = json!(task.micro);
+    problem["speed_mm_s"] = json!(task.speed_mm_s);
+    problem["columns"] = json!(columns);
     if let Some(length) = parameters.contact_length_mm {
-        parts["contact_length_mm"] = json!(length);
+        problem["contact_length_mm"] = json!(length);
     }
-    parts
+    problem
 }
 
 impl SampleRow {

@@ -2,7 +2,7 @@
 
 use super::curve::{MicroCurve, problem};
 use super::{Micro, TaskResult, columns, monotony, same_waves};
-use crate::artifact::{ArtifactError, Digest, SolveStore};
+use crate::artifact::{Digest, SolveStore};
 use crate::fem::cost::MeshCost;
 use crate::fem::profile::RigidProfile;
 use crate::multiscale::scales::Scales;
@@ -10,6 +10,7 @@ use crate::multiscale::{LocalLaw, SoftContact};
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use crate::stages::bem::CurveRow;
+use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError, Watch};
 use crate::surface::Wave;
@@ -110,14 +111,15 @@ impl PressedSurface {
     }
 }
 
-impl Task {
-    /// Digest of microscale, rubber, speed and mesh: under which the samples are kept.
-    pub fn problem(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
-        problem(parameters, rubber, self, self.columns(parameters))
+impl SolveTask for Task {
+    type Parameters = Micro;
+    type Output = TaskResult;
+
+    fn problem(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
+        Digest::of_value(&problem(parameters, rubber, self, self.columns(parameters)))
     }
 
-    /// Digest of all that determines which samples the task asks for.
-    pub fn key(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
+    fn key(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
         let surfaces: Vec<_> = self
             .surfaces
             .iter()
@@ -131,49 +133,11 @@ impl Task {
         }))
     }
 
-    /// Elements over the period of the microscale.
-    pub fn columns(&self, parameters: &Micro) -> usize {
-        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let shortest = self.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
-        columns(parameters.columns_per_shortest_wavelength, period, shortest)
+    fn name(&self) -> String {
+        format!("micro, {}, {} mm/s", self.owner_names(), self.speed_mm_s)
     }
 
-    /// What its samples cost.
-    pub fn cost(&self, parameters: &Micro) -> MeshCost {
-        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-        let profile = RigidProfile::from_waves(&self.micro, period);
-        MeshCost::new(&profile, self.columns(parameters), parameters.estimate_mesh_error)
-    }
-
-    /// Whether a packed store has all samples of the task.
-    ///
-    /// # Errors
-    /// [`ArtifactError::Io`].
-    pub fn is_finished(
-        &self,
-        parameters: &Micro,
-        rubber: &Rubber,
-        store: &SolveStore,
-    ) -> Result<bool, ArtifactError> {
-        let solves = store.problem(&self.problem(parameters, rubber))?;
-        Ok(solves.is_finished(&self.key(parameters, rubber)))
-    }
-
-    /// Solves what a packed store does not have.
-    ///
-    /// # Errors
-    /// [`StageError::Microscale`], [`StageError::Interrupted`], those of the store.
-    pub fn solve(
-        &self,
-        parameters: &Micro,
-        rubber: &Rubber,
-        store: &SolveStore,
-        watch: Watch,
-    ) -> Result<(), StageError> {
-        self.sample(parameters, rubber, store, watch).map(drop)
-    }
-
-    pub(super) fn sample(
+    fn solve(
         &self,
         parameters: &Micro,
         rubber: &Rubber,
@@ -198,6 +162,22 @@ impl Task {
         let (owners, speed_mm_s) = (self.owner_names(), self.speed_mm_s);
         warnings.extend(odd.map(|what| format!("{owners}, {speed_mm_s} mm/s: {what}")));
         Ok(TaskResult { samples, law: rows, warnings })
+    }
+}
+
+impl Task {
+    /// Elements over the period of the microscale.
+    pub fn columns(&self, parameters: &Micro) -> usize {
+        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let shortest = self.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
+        columns(parameters.columns_per_shortest_wavelength, period, shortest)
+    }
+
+    /// What its samples cost.
+    pub fn cost(&self, parameters: &Micro) -> MeshCost {
+        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let profile = RigidProfile::from_waves(&self.micro, period);
+        MeshCost::new(&profile, self.columns(parameters), parameters.estimate_mesh_error)
     }
 
     /// The largest local pressure in Pa that the macro contacts reach.

@@ -1,21 +1,20 @@
 //! What the stage writes.
 
-use crate::artifact::{Row, SchemaVersion};
+use crate::artifact::{Row, SchemaVersion, Table};
 use crate::stages::bem::CurveRow;
 use crate::stages::fem::FemSolveRow;
-use crate::stages::schema_of;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The averages at finite deformation: `averages.arrow`.
-pub const AVERAGES_FILE: &str = "averages.arrow";
+pub const AVERAGES: Table<AverageRow> = Table::new("multilevel", "averages.arrow");
 /// The realisations solved under both models: `pairs.arrow`.
-pub const PAIRS_FILE: &str = "pairs.arrow";
+pub const PAIRS: Table<PairRow> = Table::new("multilevel", "pairs.arrow");
 /// Curves of the half-space beyond those of `bem`, with the columns of `bem/curves.arrow`:
 /// `half_space.arrow`.
-pub const FURTHER_FILE: &str = "half_space.arrow";
+pub const FURTHER: Table<CurveRow> = Table::new("multilevel", "half_space.arrow");
 /// All solves with finite elements, with the columns of `fem/solves.arrow`: `solves.arrow`.
-pub const SOLVES_FILE: &str = "solves.arrow";
+pub const SOLVES: Table<FemSolveRow> = Table::new("multilevel", "solves.arrow");
 
 /// Average friction at finite deformation at one contact area, from both models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -127,10 +126,5 @@ impl Row for PairRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![
-        schema_of::<AverageRow>(),
-        schema_of::<PairRow>(),
-        schema_of::<CurveRow>(),
-        schema_of::<FemSolveRow>(),
-    ]
+    vec![AVERAGES.schema(), PAIRS.schema(), FURTHER.schema(), SOLVES.schema()]
 }

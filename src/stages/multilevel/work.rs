@@ -5,10 +5,11 @@ use super::ensemble::Ensemble;
 use crate::artifact::SolveStore;
 use crate::rubber::Rubber;
 use crate::stages::bem::{self, Bem, CurveRow};
-use crate::stages::fem::{self, Fem, FemCurve};
+use crate::stages::fem::{self, FemCurve};
+use crate::stages::kept::{SolveTask, Tally};
+use crate::stages::realise::Surface;
 use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What is to be solved next.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -28,12 +29,12 @@ impl Missing {
 
 /// What the curves are made of.
 pub(super) struct Work<'a> {
-    fem: Fem,
+    sweep: fem::Sweep,
     bem: &'a Bem,
     rubber: &'a Rubber,
     store: &'a SolveStore,
     watch: Watch<'a>,
-    done: AtomicU64,
+    tally: Tally<'a>,
 }
 
 impl<'a> Work<'a> {
@@ -44,7 +45,8 @@ impl<'a> Work<'a> {
         store: &'a SolveStore,
         watch: Watch<'a>,
     ) -> Self {
-        Self { fem: parameters.fem(), bem, rubber, store, watch, done: AtomicU64::new(0) }
+        let sweep = parameters.sweep(bem);
+        Self { sweep, bem, rubber, store, watch, tally: Tally::new(watch) }
     }
 
     /// Solves the curves of all ensembles, as many as their averages need.
@@ -74,8 +76,7 @@ impl<'a> Work<'a> {
                 }
                 let pairs = ensemble.open_pairs().iter();
                 for task in pairs.filter_map(|surface| ensemble.fem_task(surface)) {
-                    let areas = &self.bem.area_fractions;
-                    if !task.is_finished(&self.fem, areas, self.rubber, self.store)? {
+                    if !task.is_finished(&self.sweep, self.rubber, self.store)? {
                         missing.full.push(task);
                     }
                 }
@@ -95,20 +96,20 @@ impl<'a> Work<'a> {
     fn solve_open(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {
         let wanted = |e: &Ensemble| e.open_half_space().len() + e.open_pairs().len();
         let open: usize = ensembles.iter().map(wanted).sum();
-        let total = self.done.load(Ordering::Relaxed) + open as u64;
-        (self.watch.progress)(self.done.load(Ordering::Relaxed), total);
-        let half_space: Vec<_> = ensembles
+        let total = self.tally.done() + open as u64;
+        let half_space: Vec<bem::Task> = ensembles
             .iter()
-            .flat_map(|e| e.open_half_space().iter().map(|surface| (surface, e.speed_mm_s)))
-            .collect();
-        let curves: Vec<Vec<CurveRow>> = half_space
-            .par_iter()
-            .map(|(surface, speed_mm_s)| {
-                let Self { bem, rubber, store, watch, .. } = *self;
-                let curve = bem::curve(bem, rubber, surface, *speed_mm_s, store, watch);
-                self.counted(total, curve)
+            .flat_map(|e| {
+                let speed_mm_s = e.speed_mm_s;
+                let task =
+                    move |surface: &Surface| bem::Task { surface: surface.clone(), speed_mm_s };
+                e.open_half_space().iter().map(task)
             })
-            .collect::<Result<_, StageError>>()?;
+            .collect();
+        let Self { sweep, bem, rubber, store, watch, .. } = self;
+        let curves: Vec<Vec<CurveRow>> = self.tally.side_by_side(&half_space, total, |task| {
+            Ok::<_, StageError>(task.solve(bem, rubber, store, *watch)?.values)
+        })?;
         let mut curves = curves.into_iter();
         for ensemble in &mut *ensembles {
             let count = ensemble.open_half_space().len();
@@ -118,26 +119,13 @@ impl<'a> Work<'a> {
             .iter()
             .map(|e| e.open_pairs().iter().filter_map(|surface| e.fem_task(surface)).collect())
             .collect();
-        let curves: Vec<FemCurve> = pairs
-            .par_iter()
-            .flatten()
-            .map(|task| {
-                let Self { fem, bem, rubber, store, watch, .. } = self;
-                let areas = &bem.area_fractions;
-                self.counted(total, fem::curve(task, fem, areas, rubber, store, *watch))
-            })
-            .collect::<Result<_, StageError>>()?;
+        let tasks: Vec<&fem::Task> = pairs.iter().flatten().collect();
+        let solve = |task: &&fem::Task| task.solve(sweep, rubber, store, *watch);
+        let curves: Vec<FemCurve> = self.tally.side_by_side(&tasks, total, solve)?;
         let mut curves = curves.into_iter();
-        for (ensemble, pairs) in ensembles.iter_mut().zip(pairs) {
+        for (ensemble, pairs) in ensembles.iter_mut().zip(&pairs) {
             ensemble.full.extend(curves.by_ref().take(pairs.len()));
         }
         Ok(())
-    }
-
-    fn counted<T>(&self, total: u64, curve: Result<T, StageError>) -> Result<T, StageError> {
-        let curve = curve?;
-        (self.watch.progress)(1 + self.done.fetch_add(1, Ordering::Relaxed), total);
-        self.watch.check_interrupt()?;
-        Ok(curve)
     }
 }

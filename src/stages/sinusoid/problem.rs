@@ -1,6 +1,6 @@
 //! One wave, model, speed and mesh under a list of pressures: the unit of the store.
 
-use crate::artifact::{Digest, SolveStore};
+use crate::artifact::SolveStore;
 use crate::contact::{ContactError, ContactSolution, SlidingContact};
 use crate::fem::error::{FemError, PathEnd};
 use crate::fem::profile::RigidProfile;
@@ -9,6 +9,7 @@ use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::numerics::Interrupt;
 use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
+use crate::stages::kept::{self, Kept};
 use crate::surface::{Wave, wave};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -118,30 +119,13 @@ impl Problem {
         store: &SolveStore,
         interrupt: &Interrupt,
     ) -> Result<Vec<Outcome>, SolveError> {
-        let key = self.key(rubber);
-        if let Some(outcomes) = store.get::<Vec<Outcome>>(&key)? {
-            return Ok(outcomes);
-        }
-        let outcomes = match self.model {
-            Model::HalfSpace => self.half_space(rubber, interrupt)?,
-            Model::Linear => self.finite_deformation(rubber, Rheology::Linear, interrupt)?,
-            Model::NeoHookean => {
-                self.finite_deformation(rubber, Rheology::NeoHookean, interrupt)?
-            }
-        };
-        store.put(&key, &outcomes)?;
-        Ok(outcomes)
-    }
-
-    /// Digest of all that determines the outcomes.
-    fn key(&self, rubber: &Rubber) -> Digest {
-        Digest::of_value(&json!({
-            "solver": ["sinusoid", SOLVER_REVISION],
-            "equilibrium_modulus": rubber.equilibrium_modulus,
-            "branches": rubber.branches,
-            "poisson_ratio": rubber.poisson_ratio,
-            "problem": self,
-        }))
+        let mut problem = kept::problem("sinusoid", SOLVER_REVISION, rubber);
+        problem["problem"] = json!(self);
+        Kept::open(store, problem, interrupt)?.take_or(&[], || match self.model {
+            Model::HalfSpace => self.half_space(rubber, interrupt),
+            Model::Linear => self.finite_deformation(rubber, Rheology::Linear, interrupt),
+            Model::NeoHookean => self.finite_deformation(rubber, Rheology::NeoHookean, interrupt),
+        })
     }
 
     fn wave(&self) -> Wave {

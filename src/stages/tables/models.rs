@@ -1,12 +1,12 @@
 //! How far the models of a run are apart.
 
 use super::{BEM, FEM, FrictionRow, HYBRID, KLUEPPEL_HEINRICH, MULTILEVEL, PERSSON};
-use crate::artifact::Row;
+use crate::artifact::{Row, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How far the models of a run are apart: `models.arrow`, where it has more than the half-space.
-pub const MODELS_FILE: &str = "models.arrow";
+pub const MODELS: Table<ModelRow> = Table::new("tables", "models.arrow");
 
 /// Relative difference of one model from another, averaged over contact areas (thesis 5.2.1,
 /// 5.4.4).

@@ -3,13 +3,13 @@
 use super::{FrictionRow, MULTILEVEL};
 use crate::artifact::{ArtifactError, RunView};
 use crate::numerics::statistics::MeanEstimate;
-use crate::stages::multilevel::{AVERAGES_FILE, AverageRow, PAIRS_FILE, PairRow};
+use crate::stages::multilevel::{AVERAGES, AverageRow, PAIRS, PairRow};
 
 /// The rows of the model `multilevel`: the realisations that were solved at finite deformation, and the
 /// average, which rests on those of the half-space too.
 pub(super) fn read(run: &RunView) -> Result<Vec<FrictionRow>, ArtifactError> {
-    let (averages, _) = run.read_table::<AverageRow>("multilevel", AVERAGES_FILE)?;
-    let (pairs, _) = run.read_table::<PairRow>("multilevel", PAIRS_FILE)?;
+    let averages = run.rows(AVERAGES)?;
+    let pairs = run.rows(PAIRS)?;
     let mut rows: Vec<FrictionRow> =
         averages.iter().map(|average| row(average, &realisations(average, &pairs))).collect();
     rows.sort_by(|a, b| {

@@ -1,10 +1,10 @@
 //! Published tables beside the computed ones.
 
 use super::super::approximate::ScaleRow;
-use super::super::micro::{SAMPLES_FILE, SampleRow, between_samples};
+use super::super::micro::{SAMPLES, SampleRow, between_samples};
 use super::super::realise::same_surfaces;
 use super::{FrictionRow, Model, Tables};
-use crate::artifact::{Digest, Input, Metadata, Row, RunView};
+use crate::artifact::{Digest, Input, Metadata, Row, RunView, Table};
 use crate::files;
 use crate::stages::{Context, StageError};
 use schemars::JsonSchema;
@@ -49,10 +49,10 @@ pub struct PublishedCorrections {
 
 /// Computed beside published friction: `comparison.arrow`, where the recipe names published
 /// tables.
-pub const COMPARISON_FILE: &str = "comparison.arrow";
+pub const COMPARISON: Table<ComparisonRow> = Table::new("tables", "comparison.arrow");
 /// Computed beside published corrections: `corrections.arrow`, where the recipe names some.
-pub const CORRECTIONS_FILE: &str = "corrections.arrow";
-/// Metadata of [`COMPARISON_FILE`] and [`CORRECTIONS_FILE`]: the note of the recipe.
+pub const CORRECTIONS: Table<CorrectionRow> = Table::new("tables", "corrections.arrow");
+/// Metadata of [`COMPARISON`] and [`CORRECTIONS`]: the note of the recipe.
 pub const NOTE_KEY: &str = "note";
 
 /// Computed beside published friction at one contact area.
@@ -177,15 +177,15 @@ pub(super) fn write(
         for published in &parameters.published {
             compared.extend(compare(published, rows, fitted)?);
         }
-        context.pending.write_table(COMPARISON_FILE, &compared, &metadata)?;
+        context.pending.write_table(COMPARISON, &compared, &metadata)?;
     }
     if !parameters.published_corrections.is_empty() {
-        let (samples, _) = run.read_table::<SampleRow>("micro", SAMPLES_FILE)?;
+        let samples = run.rows(SAMPLES)?;
         let mut compared = Vec::new();
         for published in &parameters.published_corrections {
             compared.extend(compare_corrections(published, &samples, fitted)?);
         }
-        context.pending.write_table(CORRECTIONS_FILE, &compared, &metadata)?;
+        context.pending.write_table(CORRECTIONS, &compared, &metadata)?;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! What older theories predict at the areas of the half-space.
 
 use super::Value;
-use crate::artifact::{Row, RunView};
+use crate::artifact::{Row, RunView, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use crate::stages::StageError;
@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What the theories predict for each realisation: `theories.arrow`, where the recipe asks for any.
-pub const THEORIES_FILE: &str = "theories.arrow";
+pub const THEORIES: Table<TheoryRow> = Table::new("tables", "theories.arrow");
 
 /// A theory that needs no contact to be solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
