@@ -4,7 +4,7 @@
 //!     cargo run --release --example stage_results RUN OUT.arrow
 
 use asperity::artifact::{Metadata, Row, RunView, data_frame, write_table};
-use asperity::stages::tables::FRICTION;
+use asperity::stages::tables::{FRICTION, Model};
 use polars::prelude::SortMultipleOptions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ use std::path::Path;
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 struct HeatRow {
     /// Contact model.
-    model: String,
+    model: Model,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     speed_mm_s: f64,
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             // 1 MPa mm/s is 1 kW/m².
             let power = row.pressure_mpa * row.speed_mm_s;
             HeatRow {
-                model: row.model.clone(),
+                model: row.model,
                 speed_mm_s: row.speed_mm_s,
                 contact_area_fraction: row.contact_area_fraction,
                 heat_kw_m2: power * row.mean,

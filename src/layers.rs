@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 /// Modules of the program, the lowest first. What the crates below it hold may be imported by all.
 const PROGRAM: &[&str] = &[
     "text",
+    "units",
     "requirement",
     "plot",
     "rubber",

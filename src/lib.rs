@@ -83,3 +83,4 @@ pub mod schemas;
 pub mod stages;
 pub mod sweep;
 mod text;
+mod units;

@@ -18,7 +18,7 @@ use super::ArtifactError;
 /// A flat struct that is one row of a table.
 ///
 /// Fields are `f64`, `u32`, `u64`, `i64`, `bool`, `String` and `Vec<f64>`; `Option` of any of them
-/// makes the column nullable. Every field has a doc comment. Floating-point columns state their
+/// makes the column nullable. An enum of names is text on the disk, and its values are in the schema. Every field has a doc comment. Floating-point columns state their
 /// unit, `"1"` if they have none:
 ///
 /// ```
@@ -128,6 +128,9 @@ pub struct Column {
     pub unit: Option<String>,
     /// What the column holds.
     pub description: String,
+    /// The values that a text may have, where the field is an enum; in the schema only, not in the file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<String>,
     /// Whether the values differ between equal runs, which keeps them out of the content digest.
     pub volatile: bool,
 }
@@ -172,6 +175,10 @@ fn json_schema<R: Row>() -> Value {
     settings.into_generator().into_root_schema_for::<R>().to_value()
 }
 
+fn text(value: &Value) -> Option<String> {
+    value.as_str().map(str::to_owned)
+}
+
 /// Doc comments are wrapped for the source code; the description is one line.
 fn one_line(description: &Value) -> String {
     description.as_str().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ")
@@ -179,7 +186,13 @@ fn one_line(description: &Value) -> String {
 
 impl Column {
     fn of_json_schema(name: &str, property: &Value) -> Result<Self, String> {
+        // An enum whose variants have comments is a choice of constants.
+        let constants = property["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
+        let names =
+            |constant: &Value| constant["type"] == "string" && constant["const"].is_string();
+        let chosen = !constants.is_empty() && constants.iter().all(names);
         let (type_name, nullable) = match &property["type"] {
+            Value::Null if chosen => (Some("string"), false),
             Value::Array(types) => (types.first().and_then(Value::as_str), types.len() == 2),
             single => (single.as_str(), false),
         };
@@ -199,7 +212,11 @@ impl Column {
             (None, _) => Some("1".into()),
         };
         let volatile = property["volatile"] == true;
-        Ok(Self { name: name.into(), kind, nullable, unit, description, volatile })
+        let values = match property["enum"].as_array() {
+            Some(values) => values.iter().filter_map(text).collect(),
+            None => constants.iter().filter_map(|constant| text(&constant["const"])).collect(),
+        };
+        Ok(Self { name: name.into(), kind, nullable, unit, description, values, volatile })
     }
 
     /// The Arrow field with unit and description in its metadata.
@@ -222,6 +239,7 @@ impl Column {
             nullable: field.is_nullable(),
             unit: metadata.get("unit").cloned(),
             description: metadata.get("description").cloned().unwrap_or_default(),
+            values: Vec::new(),
             volatile: metadata.get("volatile").is_some_and(|flag| flag == "true"),
         })
     }

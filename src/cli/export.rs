@@ -158,7 +158,7 @@ impl Export {
 
     /// Whether a row is of the model, number of waves and speed that were asked for.
     fn chosen(&self, row: &FrictionRow) -> bool {
-        self.model.is_none_or(|model| model.name() == row.model)
+        self.model.is_none_or(|model| model == row.model)
             && self.waves.is_none_or(|waves| waves == row.waves)
             && self.speed.is_none_or(|speed| speed == row.speed_mm_s)
     }

@@ -8,6 +8,7 @@ use crate::multiscale::scales::Scales;
 use crate::numerics::Interrupt;
 use crate::stages::micro::Micro;
 use crate::stages::{SolveError, StageError};
+use crate::units::Units;
 use serde::Serialize;
 
 /// A microscale at one speed.
@@ -57,10 +58,10 @@ pub(super) fn microscales(
                 forecasts.iter().find(same).map_or(1.0, |curve| f64::from(curve.realisations));
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let solve = || -> Result<f64, SolveError> {
-                let speed = speed_mm_s / 1e3;
+                let speed = speed_mm_s.mm_to_m();
                 let mut contact =
                     SlidingContact::new_interruptible(rubber, speed, period, &heights, interrupt)?;
-                let solution = contact.solve(row.pressure_mpa * 1e6)?;
+                let solution = contact.solve(row.pressure_mpa.mpa_to_pa())?;
                 Ok(solution.pressure.iter().copied().fold(0.0, f64::max))
             };
             let most = solve().map_err(|error| {
@@ -76,7 +77,7 @@ pub(super) fn microscales(
                 longest.wavelength,
                 shortest,
             );
-            let most_pressure_mpa = most / 1e6;
+            let most_pressure_mpa = most.pa_to_mpa();
             let profile = RigidProfile::from_waves(&scales.micro, longest.wavelength);
             let mesh = MeshCost::new(&profile, columns, parameters.estimate_mesh_error);
             let each = if scales.micro.len() == 1 { 1.0 } else { realisations };

@@ -30,6 +30,7 @@ use crate::stages::bem::{
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Chain, Job};
 use crate::stages::{Stage, StageError, Watch};
+use crate::units::Units;
 use serde::Serialize;
 use std::path::Path;
 
@@ -173,7 +174,7 @@ pub fn forecast(
     let most = curves.iter().map(|curve| curve.grid_points[1]).max().unwrap_or(0);
     // Each thread keeps the contacts of a curve on all of its grids: twice the finest one.
     let points = 2.0 * most as f64 * threads as f64;
-    let half_space = BYTES_PER_POINT * points / 1e6;
+    let half_space = (BYTES_PER_POINT * points).bytes_to_megabytes();
     let blocks = all_waves.iter().map(|curve| curve.megabytes_each).fold(0.0, f64::max);
     let megabytes = BASE_MEGABYTES + half_space.max(blocks * threads as f64);
     Ok(Forecast {
@@ -270,9 +271,7 @@ impl Trial {
     }
 
     fn by_curve(&self) -> impl Iterator<Item = &[CurveRow]> {
-        self.curves.chunk_by(|a, b| {
-            (a.waves, a.realisation, a.speed_mm_s) == (b.waves, b.realisation, b.speed_mm_s)
-        })
+        self.curves.chunk_by(CurveRow::same_curve)
     }
 
     /// The curves of the first realisation.
@@ -298,8 +297,8 @@ impl Trial {
         let one = |row: &&SolveRow| own(row) && row.realisation == 1;
         let surface = self.first_surfaces().find(|surface| surface.waves == waves);
         let profile = surface.map_or(&[][..], |surface| &surface.profile);
-        let contact = [last.pressure_mpa * 1e6, last.contact_area_fraction];
-        let speed = speed_mm_s / 1e3;
+        let contact = [last.pressure_mpa.mpa_to_pa(), last.contact_area_fraction];
+        let speed = speed_mm_s.mm_to_m();
         CurveForecast {
             waves,
             speed_mm_s,

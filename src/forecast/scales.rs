@@ -3,6 +3,7 @@
 use crate::rubber::Rubber;
 use crate::stages::micro::Micro;
 use crate::surface::{SineScale, Wave};
+use crate::units::Units;
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
@@ -53,10 +54,10 @@ pub(super) fn scales(
         let scale = SineScale { wavelength: wave.wavelength, amplitude: wave.amplitude.abs() };
         let (model, reason) = choose(scale.rms_slope(), threshold);
         ScaleForecast {
-            wavelength_mm: wave.wavelength * 1e3,
-            amplitude_mm: wave.amplitude * 1e3,
+            wavelength_mm: wave.wavelength.m_to_mm(),
+            amplitude_mm: wave.amplitude.m_to_mm(),
             rms_slope: scale.rms_slope(),
-            full_contact_mpa: full / 1e6,
+            full_contact_mpa: full.pa_to_mpa(),
             pressed_flat: if full > 0.0 { within / full } else { 0.0 },
             model,
             reason,

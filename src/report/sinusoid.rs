@@ -86,7 +86,8 @@ impl Study {
         );
         let mut rows: Vec<&AgreementRow> = self.agreement.iter().collect();
         let order = |a: &AgreementRow, b: &AgreementRow| {
-            let names = (&a.model, &a.quantity).cmp(&(&b.model, &b.quantity));
+            let names =
+                (a.model.name(), a.quantity.name()).cmp(&(b.model.name(), b.quantity.name()));
             names.then(a.level.total_cmp(&b.level))
         };
         rows.sort_by(|a, b| order(a, b).then(a.aspect_ratio.total_cmp(&b.aspect_ratio)));
@@ -203,9 +204,10 @@ fn side_by_side(
     let names = Model::ALL.map(Model::name);
     let _ = writeln!(text, "| {} | {} | {} |", header[0], header[1], names.join(" | "));
     let _ = writeln!(text, "|{}", "---:|".repeat(2 + names.len()));
-    for row in rows.iter().filter(|row| row.model == names[0]) {
-        let cells = names.map(|name| {
-            let found = rows.iter().find(|other| other.model == name && place(other) == place(row));
+    for row in rows.iter().filter(|row| row.model == Model::ALL[0]) {
+        let cells = Model::ALL.map(|model| {
+            let found =
+                rows.iter().find(|other| other.model == model && place(other) == place(row));
             found.map_or(String::new(), |found| cell(found, quantity))
         });
         let (first, second) = place(row);

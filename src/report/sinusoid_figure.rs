@@ -2,7 +2,7 @@
 
 use super::sinusoid::Study;
 use crate::plot::{COLOURS, FONT, FigureError};
-use crate::stages::sinusoid::{Model, PointRow};
+use crate::stages::sinusoid::{Limit, Model, PointRow};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use std::ops::Range;
@@ -77,7 +77,7 @@ fn draw(
         .build_cartesian_2d(across.clone().log_scale(), (least_area..1.1).log_scale())?;
     mesh(&mut chart, "contact area fraction Ac/A0", &|y| format!("{y:.2}"))?;
     curves(&mut chart, study, area)?;
-    let fast = study.asymptotes.iter().filter(|row| row.limit == "fast");
+    let fast = study.asymptotes.iter().filter(|row| row.limit == Limit::Fast);
     for (row, colour) in fast.zip(COLOURS.iter().cycle()) {
         let line = [across.end / 30.0, across.end].map(|x| (x, row.hertz_area_fraction));
         chart.draw_series(LineSeries::new(line, colour.stroke_width(2)))?;
@@ -120,9 +120,9 @@ fn curves<Y: Ranged<ValueType = f64>>(
             for part in curve.split(|point| value(point).is_none()) {
                 let line = part.iter().filter_map(|p| Some((p.deborah_number, value(p)?)));
                 let style = colour.stroke_width(2);
-                if curve[0].model == Model::NeoHookean.name() {
+                if curve[0].model == Model::NeoHookean {
                     chart.draw_series(LineSeries::new(line, style))?;
-                } else if curve[0].model == Model::HalfSpace.name() {
+                } else if curve[0].model == Model::HalfSpace {
                     chart.draw_series(DashedLineSeries::new(line, 6, 5, style))?;
                 } else {
                     chart.draw_series(line.map(|at| Circle::new(at, 4, style)))?;

@@ -14,7 +14,7 @@ const MOST_SHOWN: usize = 30;
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionTable {
     /// Contact model.
-    pub model: String,
+    pub model: Model,
     /// Number of waves of the approximation.
     pub waves: u32,
     /// Sliding speed in mm/s.
@@ -25,10 +25,10 @@ pub struct FrictionTable {
 
 /// Sorts rows into tables.
 pub fn friction_tables(rows: &[FrictionRow]) -> Vec<FrictionTable> {
-    let key = |row: &FrictionRow| (row.model.clone(), row.waves, row.speed_mm_s);
+    let key = |row: &FrictionRow| (row.model, row.waves, row.speed_mm_s);
     rows.chunk_by(|a, b| key(a) == key(b))
         .map(|rows| FrictionTable {
-            model: rows[0].model.clone(),
+            model: rows[0].model,
             waves: rows[0].waves,
             speed_mm_s: rows[0].speed_mm_s,
             rows: rows.to_vec(),
@@ -144,7 +144,7 @@ pub fn data_frame(rows: &[FrictionRow]) -> Result<DataFrame, PolarsError> {
     let optional = |name: &str, value: fn(&FrictionRow) -> Option<f64>| {
         Column::new(name.into(), rows.iter().map(value).collect::<Vec<Option<f64>>>())
     };
-    let models: Vec<&str> = rows.iter().map(|row| row.model.as_str()).collect();
+    let models: Vec<&str> = rows.iter().map(|row| row.model.name()).collect();
     let waves: Vec<u32> = rows.iter().map(|row| row.waves).collect();
     let mut columns = vec![
         Column::new("model".into(), models),
@@ -208,7 +208,7 @@ pub fn comparison_markdown(
             first.speed_mm_s,
             first.model,
             first.realisations,
-            if first.model == Model::Bem.name() { "grid" } else { "mesh" },
+            if first.model == Model::Bem { "grid" } else { "mesh" },
             crate::artifact::TOOL_VERSION
         );
         text.push_str(
@@ -303,7 +303,7 @@ mod tests {
 
     fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
         FrictionRow {
-            model: "bem".into(),
+            model: Model::Bem,
             waves,
             speed_mm_s: 10.0,
             contact_area_fraction: area,

@@ -1,5 +1,6 @@
 //! A rubber as the text of its file.
 
+use crate::units::Units;
 use asperity_core::rubber::{RubberData, ShiftLaw, VerticalShift};
 
 /// A rubber as the TOML that [`read_rubber_data`](super::read_rubber_data) reads, numbers with seven
@@ -12,7 +13,7 @@ pub fn to_toml(data: &RubberData, source: &str) -> String {
         "# E(w) = equilibrium_modulus + sum_k modulus_k i w tau_k / (1 + i w tau_k).".into(),
         format!("name = {}", text(&rubber.name)),
         format!("source = {}", text(source)),
-        format!("equilibrium_modulus_mpa = {:.6e}", rubber.equilibrium_modulus / 1e6),
+        format!("equilibrium_modulus_mpa = {:.6e}", rubber.equilibrium_modulus.pa_to_mpa()),
         format!("poisson_ratio = {}", rubber.poisson_ratio),
     ];
     if let Some(range) = &data.measured {
@@ -47,7 +48,7 @@ pub fn to_toml(data: &RubberData, source: &str) -> String {
     }
     for branch in &rubber.branches {
         lines.push("\n[[branches]]".into());
-        lines.push(format!("modulus_mpa = {:.6e}", branch.modulus / 1e6));
+        lines.push(format!("modulus_mpa = {:.6e}", branch.modulus.pa_to_mpa()));
         lines.push(format!("relaxation_time_s = {:.6e}", branch.relaxation_time));
     }
     lines.join("\n") + "\n"

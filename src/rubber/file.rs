@@ -25,6 +25,7 @@
 //! ```
 
 use crate::files::{self, TomlError};
+use crate::units::Units;
 use asperity_core::error_kind::{ErrorKind, HasKind};
 use std::path::{Path, PathBuf};
 
@@ -34,8 +35,6 @@ use asperity_core::rubber::{
     FrequencyRange, MaxwellBranch, Rubber, RubberData, RubberError, ShiftLaw,
     TemperatureDependence, TemperatureError, VerticalShift,
 };
-
-const PA_PER_MPA: f64 = 1e6;
 
 /// Why a file is no rubber.
 #[derive(Debug, thiserror::Error)]
@@ -191,7 +190,7 @@ struct BranchEntry {
 impl RubberFile {
     /// The first modulus or relaxation time that is none, with its key.
     fn bad_number(&self) -> Option<(String, f64)> {
-        let usable = |value: f64| value > 0.0 && (PA_PER_MPA * value).is_finite();
+        let usable = |value: f64| value > 0.0 && value.mpa_to_pa().is_finite();
         let equilibrium = ("equilibrium_modulus_mpa".to_owned(), self.equilibrium_modulus_mpa);
         let branches = self.branches.iter().enumerate().flat_map(|(k, branch)| {
             let named = |key: &str| format!("{key} of branch {}", k + 1);
@@ -207,12 +206,12 @@ impl RubberFile {
 impl From<RubberFile> for Rubber {
     fn from(file: RubberFile) -> Self {
         let branch = |entry: &BranchEntry| MaxwellBranch {
-            modulus: entry.modulus_mpa * PA_PER_MPA,
+            modulus: entry.modulus_mpa.mpa_to_pa(),
             relaxation_time: entry.relaxation_time_s,
         };
         Self {
             name: file.name,
-            equilibrium_modulus: file.equilibrium_modulus_mpa * PA_PER_MPA,
+            equilibrium_modulus: file.equilibrium_modulus_mpa.mpa_to_pa(),
             branches: file.branches.iter().map(branch).collect(),
             poisson_ratio: file.poisson_ratio,
         }

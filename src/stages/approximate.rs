@@ -12,6 +12,7 @@ use crate::surface::SineScale;
 use crate::surface::correlation::CorrelationSample;
 use crate::surface::ladder::{Ladder, Undetermined};
 use crate::surface::sine_fit::{SineFit, fit_sines, superposed_correlation};
+use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -241,13 +242,13 @@ pub fn run(
     let window_length = length_in(&metadata, WINDOW_LENGTH_KEY)?;
     let reliable_mm = metadata.get(RELIABLE_KEY).cloned().unwrap_or_default();
     // The schema of the correlation has had it from revision 4 on.
-    let reliable = length_in(&metadata, RELIABLE_KEY)?.unwrap_or(0.0) / 1e3;
+    let reliable = length_in(&metadata, RELIABLE_KEY)?.unwrap_or(0.0).mm_to_m();
     let correlations = Correlations::of(rows, parameters.longest_lag_mm, window_length);
     let (mut scales, mut fits, mut fitted, mut warnings) = (vec![], vec![], vec![], vec![]);
     for &waves in &parameters.waves {
         context.check_interrupt()?;
         let in_this = |source| StageError::SineFit { waves, source };
-        let base = parameters.shortest_wavelength_mm.map(|mm| mm / 1e3);
+        let base = parameters.shortest_wavelength_mm.map(|mm| mm.mm_to_m());
         let (spacing, window) = (correlations.spacing, correlations.window_length);
         let (wavelengths, beyond) = Ladder::new(base, spacing, waves as usize)?.for_scans(
             spacing,
@@ -262,7 +263,7 @@ pub fn run(
         warnings.extend(finer_than(waves, spacing, wavelengths[0]));
         warnings.extend(fit.sine_scales().iter().filter(|scale| scale.amplitude == 0.0).map(
             |scale| {
-                let wavelength_mm = scale.wavelength * 1e3;
+                let wavelength_mm = scale.wavelength.m_to_mm();
                 format!("{waves} waves: the fit gives the wave of {wavelength_mm:.4} mm zero amplitude: the scans show no roughness of its own there")
             },
         ));
@@ -295,9 +296,9 @@ fn finer_than(waves: u32, shortest_lag: f64, shortest_wave: f64) -> Option<Strin
             "{waves} waves: the correlation begins at a lag of {:.4} mm, far below the shortest wave ({:.4} mm), \
              which then stands for all finer roughness and is too steep; average that away with \
              ingest.conditioning.lateral_resolution_um = {:.1}, or begin with shorter waves",
-            shortest_lag * 1e3,
-            shortest_wave * 1e3,
-            RESOLUTION * shortest_wave * 1e6
+            shortest_lag.m_to_mm(),
+            shortest_wave.m_to_mm(),
+            (RESOLUTION * shortest_wave).m_to_um()
         )
     })
 }
@@ -307,8 +308,8 @@ fn write_given(parameters: &Approximate, context: &mut Context) -> Result<Vec<St
     let rows = parameters.given.iter().flat_map(|given| {
         (1..).zip(&given.scales).map(|(number, scale)| {
             let sine = SineScale {
-                wavelength: scale.wavelength_mm / 1e3,
-                amplitude: scale.amplitude_mm / 1e3,
+                wavelength: scale.wavelength_mm.mm_to_m(),
+                amplitude: scale.amplitude_mm.mm_to_m(),
             };
             ScaleRow {
                 waves: given.number(),
@@ -349,8 +350,8 @@ impl Correlations {
             let within = longest_lag_mm.is_none_or(|limit| row.lag_mm <= limit * (1.0 + 1e-9));
             if within && row.lag_mm > 0.0 {
                 by_scan.entry(row.scan).or_default().push(CorrelationSample {
-                    lag: row.lag_mm / 1e3,
-                    value: row.correlation_mm2 / 1e6,
+                    lag: row.lag_mm.mm_to_m(),
+                    value: row.correlation_mm2.mm2_to_m2(),
                     pairs: row.pairs,
                 });
             }
@@ -359,7 +360,7 @@ impl Correlations {
         let spacing = average.first().map_or(0.0, |sample| sample.lag);
         let windows: Vec<_> = by_scan.into_values().collect();
         // The schema version promises the length; without it nothing is determined.
-        let window_length = window_length_mm.unwrap_or(0.0) / 1e3;
+        let window_length = window_length_mm.unwrap_or(0.0).mm_to_m();
         Self { average, windows, spacing, window_length }
     }
 
@@ -406,9 +407,9 @@ fn scale_rows(waves: u32, fit: &SineFit, intervals: &[Option<f64>]) -> Vec<Scale
         .map(|((number, scale), interval)| ScaleRow {
             waves,
             scale: number,
-            wavelength_mm: scale.wavelength * 1e3,
-            amplitude_mm: scale.amplitude * 1e3,
-            amplitude_confidence_95_mm: interval.map(|half_width| half_width * 1e3),
+            wavelength_mm: scale.wavelength.m_to_mm(),
+            amplitude_mm: scale.amplitude.m_to_mm(),
+            amplitude_confidence_95_mm: interval.map(|half_width| half_width.m_to_mm()),
             rms_slope: scale.rms_slope(),
         })
         .collect()
@@ -431,9 +432,9 @@ fn fitted_rows(waves: u32, fit: &SineFit, average: &[CorrelationSample]) -> Vec<
     let scales = fit.sine_scales();
     let row = |sample: &CorrelationSample| FittedRow {
         waves,
-        lag_mm: sample.lag * 1e3,
-        measured_mm2: sample.value * 1e6,
-        fitted_mm2: superposed_correlation(&scales, sample.lag) * 1e6,
+        lag_mm: sample.lag.m_to_mm(),
+        measured_mm2: sample.value.m2_to_mm2(),
+        fitted_mm2: superposed_correlation(&scales, sample.lag).m2_to_mm2(),
     };
     average.iter().map(row).collect()
 }

@@ -15,6 +15,7 @@ use crate::artifact::{ArrayDataset, Pending, RunView, SolveStore, Storage};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
+use crate::units::Units;
 pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
 use ensemble::{CurveResult, Ensemble};
@@ -269,7 +270,7 @@ fn ensembles<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Ensemble<'a>>
 fn excited(parameters: &Bem, surfaces: &[Surface]) -> Option<FrequencyRange> {
     let waves = surfaces.iter().flat_map(|surface| &surface.profile);
     let wavelengths = waves.filter(|wave| wave.amplitude != 0.0).map(|wave| wave.wavelength);
-    let speeds = parameters.speeds_mm_s.iter().map(|speed| speed / 1e3);
+    let speeds = parameters.speeds_mm_s.iter().map(|speed| speed.mm_to_m());
     FrequencyRange::excited(wavelengths, speeds)
 }
 
@@ -298,7 +299,8 @@ fn write(pending: &mut Pending, ensembles: &[Ensemble]) -> Result<(), StageError
 
 fn realisations_row(ensemble: &Ensemble) -> Option<RealisationsRow> {
     let surface = ensemble.surfaces.first()?;
-    let left_out = ensemble.left_out.wavelengths(surface).iter().map(|metre| metre * 1e3).collect();
+    let left_out =
+        ensemble.left_out.wavelengths(surface).iter().map(|metre| metre.m_to_mm()).collect();
     Some(RealisationsRow {
         waves: surface.waves,
         speed_mm_s: ensemble.speed_mm_s,

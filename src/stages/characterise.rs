@@ -6,8 +6,8 @@ mod standards;
 mod warnings;
 
 pub use spectrum::{
-    AGREEMENT, AgreementRow, HURST, HurstRow, ISOTROPIC, IsotropicRow, LARGEST_DIFFERENCE_KEY,
-    SPECTRUM, SpectrumRow,
+    AGREEMENT, AgreementRow, HURST, HurstMethod, HurstRow, ISOTROPIC, IsotropicRow,
+    LARGEST_DIFFERENCE_KEY, SPECTRUM, SpectrumRow,
 };
 pub use standards::{DEPTH, DepthRow, PROFILE, ProfileDepth, ProfileRow, TEXTURE, TextureRow};
 
@@ -25,6 +25,7 @@ use crate::surface::probe::Probe;
 use crate::surface::profile::ProfileStandard;
 use crate::surface::self_affine::{ConfidenceInterval, LagRange, SelfAffineFit, fit_self_affine};
 use crate::surface::spectrum::{PowerSpectrum, Window, power_spectra};
+use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -176,7 +177,7 @@ impl Characterise {
     }
 
     fn probe(&self) -> Probe {
-        let metres = |um: f64| um / 1e6;
+        let metres = |um: f64| um.um_to_m();
         Probe {
             spot_diameter: self.spot_diameter_um.map(metres),
             tip_radius: self.tip_radius_um.map(metres),
@@ -378,7 +379,7 @@ pub fn run(
     let windows = read_windows(run)?;
     context.check_interrupt()?;
     let (roughness, mut warnings) = roughness_parameters(&windows)?;
-    let longest_lag = parameters.longest_lag_mm.map(|mm| mm / 1e3);
+    let longest_lag = parameters.longest_lag_mm.map(|mm| mm.mm_to_m());
     let correlations = correlate_scans(&windows, longest_lag)?;
     let average = HeightDifferenceCorrelation::average(&correlations)?;
     context.check_interrupt()?;
@@ -396,7 +397,7 @@ pub fn run(
         .flat_map(|(name, c)| correlation_rows(name, c, parameters.lags_per_decade))
         .collect();
     let reliable = parameters.probe().shortest_reliable_wavelength(&windows);
-    let cut_off = (RELIABLE_KEY.to_owned(), (reliable * 1e3).to_string());
+    let cut_off = (RELIABLE_KEY.to_owned(), reliable.m_to_mm().to_string());
     let window_length = (WINDOW_LENGTH_KEY.to_owned(), shortest_window_mm(&windows));
     let metadata = Metadata::from([window_length, cut_off.clone()]);
     context.pending.write_table(CORRELATION, &rows, &metadata)?;
@@ -416,7 +417,8 @@ pub fn run(
     let (rows, told) = self_affine(parameters, &names, &correlations);
     warnings.extend(told);
     context.pending.write_rows(SELF_AFFINE, &rows)?;
-    let shortest_lag_mm = parameters.self_affine_shortest_lag_mm.unwrap_or(average.spacing * 1e3);
+    let shortest_lag_mm =
+        parameters.self_affine_shortest_lag_mm.unwrap_or(average.spacing.m_to_mm());
     let (hurst, missing) =
         spectrum::hurst_rows(parameters, &names, &spectra, &rows, reliable, shortest_lag_mm);
     context.pending.write_rows(HURST, &hurst)?;
@@ -434,7 +436,7 @@ pub fn run(
 fn shortest_window_mm(windows: &[LineScan]) -> String {
     let length = |window: &LineScan| window.length() + window.spacing;
     let shortest = windows.iter().map(length).fold(f64::INFINITY, f64::min);
-    (shortest * 1e3).to_string()
+    shortest.m_to_mm().to_string()
 }
 
 /// Name of a window and its parameters.
@@ -464,11 +466,11 @@ fn roughness_parameters(
 fn parameters_row((scan, roughness): &NamedParameters) -> ParametersRow {
     ParametersRow {
         scan: scan.clone(),
-        ra_mm: roughness.mean_absolute_height * 1e3,
-        rq_mm: roughness.rms_height * 1e3,
-        rp_mm: roughness.highest_peak * 1e3,
-        rv_mm: roughness.deepest_valley * 1e3,
-        rt_mm: roughness.total_height * 1e3,
+        ra_mm: roughness.mean_absolute_height.m_to_mm(),
+        rq_mm: roughness.rms_height.m_to_mm(),
+        rp_mm: roughness.highest_peak.m_to_mm(),
+        rv_mm: roughness.deepest_valley.m_to_mm(),
+        rt_mm: roughness.total_height.m_to_mm(),
         rsk: roughness.skewness,
         rku: roughness.kurtosis,
         rms_slope: roughness.rms_slope,
@@ -481,22 +483,22 @@ fn average_rows(roughness: &[NamedParameters]) -> Result<Vec<AverageRow>, StageE
     }
     let parameters: Vec<_> = roughness.iter().map(|(_, parameters)| *parameters).collect();
     let average = AverageRoughness::of(&parameters)?;
-    let row = |parameter: &str, estimate: MeanEstimate, factor: f64| AverageRow {
+    let row = |parameter: &str, estimate: MeanEstimate, unit: fn(f64) -> f64| AverageRow {
         parameter: parameter.to_owned(),
-        mean: estimate.mean * factor,
-        standard_deviation: finite(estimate.standard_deviation * factor),
-        confidence_95: finite(estimate.confidence_95 * factor),
+        mean: unit(estimate.mean),
+        standard_deviation: finite(unit(estimate.standard_deviation)),
+        confidence_95: finite(unit(estimate.confidence_95)),
         windows: estimate.count as u64,
     };
     Ok(vec![
-        row("Ra [mm]", average.mean_absolute_height, 1e3),
-        row("Rq [mm]", average.rms_height, 1e3),
-        row("Rp [mm]", average.highest_peak, 1e3),
-        row("Rv [mm]", average.deepest_valley, 1e3),
-        row("Rt [mm]", average.total_height, 1e3),
-        row("Rsk", average.skewness, 1.0),
-        row("Rku", average.kurtosis, 1.0),
-        row("rms slope", average.rms_slope, 1.0),
+        row("Ra [mm]", average.mean_absolute_height, Units::m_to_mm),
+        row("Rq [mm]", average.rms_height, Units::m_to_mm),
+        row("Rp [mm]", average.highest_peak, Units::m_to_mm),
+        row("Rv [mm]", average.deepest_valley, Units::m_to_mm),
+        row("Rt [mm]", average.total_height, Units::m_to_mm),
+        row("Rsk", average.skewness, pure),
+        row("Rku", average.kurtosis, pure),
+        row("rms slope", average.rms_slope, pure),
     ])
 }
 
@@ -512,8 +514,8 @@ fn correlation_rows(
     let samples = correlation.sample_log_spaced(per_decade);
     let row = |sample: crate::surface::CorrelationSample| CorrelationRow {
         scan: scan.to_owned(),
-        lag_mm: sample.lag * 1e3,
-        correlation_mm2: sample.value * 1e6,
+        lag_mm: sample.lag.m_to_mm(),
+        correlation_mm2: sample.value.m2_to_mm2(),
         pairs: sample.pairs,
     };
     samples.into_iter().map(row).collect()
@@ -528,8 +530,10 @@ fn self_affine(
     let spacing = correlations.first().map_or(0.0, |c| c.spacing);
     let most = correlations.iter().map(|c| c.maximum_lag()).min().unwrap_or(0);
     let range = LagRange {
-        shortest: parameters.self_affine_shortest_lag_mm.map_or(spacing, |mm| mm / 1e3),
-        longest: parameters.self_affine_longest_lag_mm.map_or(most as f64 * spacing, |mm| mm / 1e3),
+        shortest: parameters.self_affine_shortest_lag_mm.map_or(spacing, |mm| mm.mm_to_m()),
+        longest: parameters
+            .self_affine_longest_lag_mm
+            .map_or(most as f64 * spacing, |mm| mm.mm_to_m()),
         per_decade: parameters.lags_per_decade,
     };
     let fits: Vec<_> = correlations
@@ -561,20 +565,29 @@ fn self_affine(
     (rows, warnings)
 }
 
+/// A pure number, which has no unit to change.
+fn pure(value: f64) -> f64 {
+    value
+}
+
 fn self_affine_row(scan: &str, fit: &SelfAffineFit) -> SelfAffineRow {
-    let lower = |i: &Option<ConfidenceInterval>, f: f64| i.and_then(|i| finite(i.lower * f));
-    let upper = |i: &Option<ConfidenceInterval>, f: f64| i.and_then(|i| finite(i.upper * f));
+    let lower = |i: &Option<ConfidenceInterval>, unit: fn(f64) -> f64| {
+        i.and_then(|i| finite(unit(i.lower)))
+    };
+    let upper = |i: &Option<ConfidenceInterval>, unit: fn(f64) -> f64| {
+        i.and_then(|i| finite(unit(i.upper)))
+    };
     SelfAffineRow {
         scan: scan.to_owned(),
         hurst_exponent: fit.hurst_exponent,
-        hurst_exponent_lower: lower(&fit.hurst_exponent_95, 1.0),
-        hurst_exponent_upper: upper(&fit.hurst_exponent_95, 1.0),
-        parallel_length_mm: fit.lateral_length * 1e3,
-        parallel_length_lower_mm: lower(&fit.lateral_length_95, 1e3),
-        parallel_length_upper_mm: upper(&fit.lateral_length_95, 1e3),
-        perpendicular_length_mm: fit.vertical_length * 1e3,
-        perpendicular_length_lower_mm: lower(&fit.vertical_length_95, 1e3),
-        perpendicular_length_upper_mm: upper(&fit.vertical_length_95, 1e3),
+        hurst_exponent_lower: lower(&fit.hurst_exponent_95, pure),
+        hurst_exponent_upper: upper(&fit.hurst_exponent_95, pure),
+        parallel_length_mm: fit.lateral_length.m_to_mm(),
+        parallel_length_lower_mm: lower(&fit.lateral_length_95, Units::m_to_mm),
+        parallel_length_upper_mm: upper(&fit.lateral_length_95, Units::m_to_mm),
+        perpendicular_length_mm: fit.vertical_length.m_to_mm(),
+        perpendicular_length_lower_mm: lower(&fit.vertical_length_95, Units::m_to_mm),
+        perpendicular_length_upper_mm: upper(&fit.vertical_length_95, Units::m_to_mm),
         plateau_found: fit.plateau_found,
         rms_residual_log10: fit.rms_residual,
     }

@@ -21,6 +21,7 @@ use crate::multiscale::{
 };
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
+use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -291,11 +292,8 @@ fn one_surface(
     interrupt: &Interrupt,
 ) -> Result<(Vec<HybridRow>, Vec<LocalRow>), StageError> {
     let scales = Scales::part(&surface.profile, micro.rms_slope_threshold);
-    let curves: Vec<&CurveRow> = data
-        .curves
-        .iter()
-        .filter(|row| row.waves == surface.waves && row.realisation == surface.realisation)
-        .collect();
+    let curves: Vec<&CurveRow> =
+        data.curves.iter().filter(|row| row.curve() == surface.at(row.speed_mm_s)).collect();
     if scales.micro.is_empty() {
         return Ok((curves.into_iter().map(uncorrected).collect(), Vec::new()));
     }
@@ -313,12 +311,12 @@ fn one_surface(
             rows.extend(at_one_speed.iter().map(|curve| beyond(curve, 0.0, 0.0)));
             continue;
         };
-        let speed = speed_mm_s / 1e3;
+        let speed = speed_mm_s.mm_to_m();
         let mut contact =
             SoftContact::new_interruptible(rubber, speed, period, &heights, law, interrupt)
                 .map_err(|error| failed(error.into()))?;
         for curve in at_one_speed {
-            let solution = match contact.solve(curve.pressure_mpa * 1e6) {
+            let solution = match contact.solve(curve.pressure_mpa.mpa_to_pa()) {
                 Ok(solution) => solution,
                 // Pressed harder than the law goes: no correction, and no end of the others.
                 Err(SoftContactError::Law {
@@ -370,11 +368,12 @@ fn microscale(
         .cloned()
         .collect();
     let column = |value: fn(&SampleRow) -> f64| samples.iter().map(|row| value(row)).collect();
-    let pressures: Vec<f64> = column(|row| row.pressure_mpa * 1e6);
+    let pressures: Vec<f64> = column(|row| row.pressure_mpa.mpa_to_pa());
     let law = match parameters.law {
         RepulsiveLaw::HalfSpace => law_of(&rows)?,
         RepulsiveLaw::FiniteDeformation => {
-            let separations: Vec<f64> = column(|row| row.separation_finite_deformation_mm / 1e3);
+            let separations: Vec<f64> =
+                column(|row| row.separation_finite_deformation_mm.mm_to_m());
             let falling = 1 + separations.windows(2).take_while(|pair| pair[1] < pair[0]).count();
             let touch = rows.first().map_or(0.0, |row| row.touch_separation_m);
             let end = LawEnd::PartialContact;
@@ -415,8 +414,8 @@ fn corrected(
             .map(|(mesh, grid)| gain * mesh + grid),
         contact_points_fraction: points as f64 / local.len() as f64,
         load_beyond_full_contact: share_beyond(local, full_contact),
-        largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max) / 1e6,
-        largest_sample_mpa: microscale.largest_pressure() / 1e6,
+        largest_pressure_mpa: local.iter().copied().fold(0.0, f64::max).pa_to_mpa(),
+        largest_sample_mpa: microscale.largest_pressure().pa_to_mpa(),
         residual,
         ..uncorrected(curve)
     }
@@ -436,8 +435,8 @@ fn beyond(curve: &CurveRow, pressure: f64, largest: f64) -> HybridRow {
         correction_points: None,
         correction_force: None,
         correction_of_area: None,
-        largest_pressure_mpa: pressure / 1e6,
-        largest_sample_mpa: largest / 1e6,
+        largest_pressure_mpa: pressure.pa_to_mpa(),
+        largest_sample_mpa: largest.pa_to_mpa(),
         ..uncorrected(curve)
     }
 }
@@ -487,8 +486,8 @@ fn local_rows(
                 realisation: curve.realisation,
                 speed_mm_s: curve.speed_mm_s,
                 contact_area_fraction: curve.contact_area_fraction,
-                x_mm: (k as f64 + 0.5) * cell * 1e3,
-                pressure_mpa: pressure / 1e6,
+                x_mm: ((k as f64 + 0.5) * cell).m_to_mm(),
+                pressure_mpa: pressure.pa_to_mpa(),
                 friction_finite_deformation: finite,
                 friction_half_space: half_space,
                 correction: finite - half_space,

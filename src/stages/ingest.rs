@@ -24,6 +24,7 @@ use crate::scans::{
     Described, FileError, FileProblem, Source, TextFormat, admit_source, read_source,
 };
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
+use crate::units::Units;
 use faults::fault_rows;
 use picture::write_pictures;
 use rayon::prelude::*;
@@ -541,10 +542,10 @@ fn check_equal_grids<'a>(
         Some(other) => Err(StageError::UnequalScans {
             scan: first.name.clone(),
             points: first.heights.len(),
-            spacing_um: first.spacing * 1e6,
+            spacing_um: first.spacing.m_to_um(),
             other: other.name.clone(),
             other_points: other.heights.len(),
-            other_spacing_um: other.spacing * 1e6,
+            other_spacing_um: other.spacing.m_to_um(),
         }),
     }
 }

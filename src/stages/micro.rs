@@ -17,6 +17,7 @@ use crate::multiscale::correction::Microscale;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use crate::surface::{Wave, wave};
+use crate::units::Units;
 pub(crate) use curve::law_of;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -253,7 +254,7 @@ pub fn run(
 /// Friction and area of a microscale between its samples, which are one or more at ascending pressures.
 pub(crate) fn between_samples(samples: &[&SampleRow]) -> Microscale {
     let column = |value: fn(&SampleRow) -> f64| samples.iter().map(|row| value(row)).collect();
-    let pressures: Vec<f64> = column(|row| row.pressure_mpa * 1e6);
+    let pressures: Vec<f64> = column(|row| row.pressure_mpa.mpa_to_pa());
     let mesh = samples.iter().map(|row| row.discretisation_error).collect();
     Microscale::new(
         &pressures,

@@ -18,6 +18,7 @@ pub mod bem;
 pub mod characterise;
 pub mod contract;
 pub mod fem;
+mod friction;
 pub mod hybrid;
 pub mod ingest;
 pub(crate) mod kept;

@@ -7,6 +7,7 @@ use crate::artifact::{Row, RunView, SchemaVersion, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::realisation::random_phases;
 use crate::surface::{SineScale, Wave};
+use crate::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -158,8 +159,8 @@ pub fn run(
 fn scales_of(fitted: &[ScaleRow], waves: u32) -> Vec<SineScale> {
     let own = fitted.iter().filter(|row| row.waves == waves);
     own.map(|row| SineScale {
-        wavelength: row.wavelength_mm / 1e3,
-        amplitude: row.amplitude_mm / 1e3,
+        wavelength: row.wavelength_mm.mm_to_m(),
+        amplitude: row.amplitude_mm.mm_to_m(),
     })
     .collect()
 }

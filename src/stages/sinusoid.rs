@@ -12,8 +12,9 @@ mod points;
 mod problem;
 mod rows;
 
+pub use conclusions::Quantity;
 pub use problem::Model;
-pub use rows::{AgreementRow, AsymptoteRow, FieldRow, PeakRow, PointRow};
+pub use rows::{AgreementRow, AsymptoteRow, FieldRow, Limit, PeakRow, PointRow};
 
 use super::contract::{Context, Contract, Inputs, Job, Planned, Request};
 use super::kept::Tally;

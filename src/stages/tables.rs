@@ -8,11 +8,12 @@ mod published;
 mod theories;
 
 use super::approximate::WAVES;
-use super::bem::{CURVES, CurveRow};
+use super::bem::CURVES;
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::fem::{self, FemCurveRow};
-use super::hybrid::{self, Hybrid, HybridRow};
+use super::fem;
+use super::friction::FrictionAt;
+use super::hybrid::{self, Hybrid};
 use super::{Stage, StageError};
 use crate::artifact::{Row, RunView, SchemaVersion, Table};
 use crate::numerics::statistics::MeanEstimate;
@@ -142,22 +143,21 @@ impl Model {
     /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Bem => BEM,
-            Self::Hybrid => HYBRID,
-            Self::Fem => FEM,
-            Self::Multilevel => MULTILEVEL,
-            Self::Persson => PERSSON,
-            Self::KlueppelHeinrich => KLUEPPEL_HEINRICH,
+            Self::Bem => "bem",
+            Self::Hybrid => "hybrid",
+            Self::Fem => "fem",
+            Self::Multilevel => "multilevel",
+            Self::Persson => "persson",
+            Self::KlueppelHeinrich => "klueppel-heinrich",
         }
     }
 }
 
-const BEM: &str = "bem";
-const HYBRID: &str = "hybrid";
-const FEM: &str = "fem";
-const MULTILEVEL: &str = "multilevel";
-const PERSSON: &str = "persson";
-const KLUEPPEL_HEINRICH: &str = "klueppel-heinrich";
+impl std::fmt::Display for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
 
 /// The models of a run besides the half-space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -188,7 +188,7 @@ pub struct FrictionRow {
     /// Contact model: `bem`, the viscoelastic half-space; `hybrid`, corrected by its steepest
     /// waves; `fem`, all waves at finite deformation; `multilevel`, the half-space with the mean difference
     /// to all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
-    pub model: String,
+    pub model: Model,
     /// Number of waves of the approximation.
     pub waves: u32,
     /// Sliding speed.
@@ -273,17 +273,17 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let (fitted, metadata) = run.read_table(WAVES)?;
     let half_space = run.rows(CURVES)?;
-    let bem: Vec<Value> = half_space.iter().cloned().map(Value::from).collect();
-    let mut rows = average(BEM, bem.clone());
+    let bem: Vec<FrictionAt> = half_space.iter().map(FrictionAt::from).collect();
+    let mut rows = average(Model::Bem, bem.clone());
     if models.hybrid.is_some() {
         let hybrid = run.rows(hybrid::HYBRID)?;
-        let values = hybrid.iter().filter_map(value_of).collect();
-        rows.extend(average(HYBRID, complete(values, &bem)));
+        let values = hybrid.iter().filter_map(FrictionAt::corrected).collect();
+        rows.extend(average(Model::Hybrid, complete(values, &bem)));
     }
     if models.fem {
         let fem = run.rows(fem::FEM)?;
-        let values: Vec<Value> = fem.into_iter().map(Value::from).collect();
-        rows.extend(average(FEM, complete(values, &bem)));
+        let values = fem.iter().map(FrictionAt::from).collect();
+        rows.extend(average(Model::Fem, complete(values, &bem)));
     }
     if let Some(corrected) = models.hybrid {
         model_error::add(&mut rows, &fitted, corrected);
@@ -296,7 +296,7 @@ pub fn run(
     if !theories.is_empty() {
         let predictions = predictions(theories, constants, rubber, &half_space, run)?;
         for of_one in predictions.chunk_by(|a, b| a.model == b.model) {
-            rows.extend(average(&of_one[0].model, of_one.iter().map(Value::from).collect()));
+            rows.extend(average(of_one[0].model, of_one.iter().map(FrictionAt::from).collect()));
         }
         context.pending.write_rows(THEORIES, &predictions)?;
     }
@@ -311,103 +311,44 @@ pub fn run(
     Ok(warnings)
 }
 
-/// Friction of one realisation at one contact area, of any model.
-#[derive(Debug, Clone)]
-struct Value {
-    waves: u32,
-    realisation: u32,
-    speed_mm_s: f64,
-    contact_area_fraction: f64,
-    pressure_mpa: f64,
-    friction_coefficient: f64,
-    interpolation_error: f64,
-    discretisation_error: Option<f64>,
-    left_out_error: f64,
-}
-
-impl From<CurveRow> for Value {
-    fn from(row: CurveRow) -> Self {
-        Self {
-            waves: row.waves,
-            realisation: row.realisation,
-            speed_mm_s: row.speed_mm_s,
-            contact_area_fraction: row.contact_area_fraction,
-            pressure_mpa: row.pressure_mpa,
-            friction_coefficient: row.friction_coefficient,
-            interpolation_error: row.interpolation_error,
-            discretisation_error: row.discretisation_error,
-            left_out_error: row.left_out_error,
-        }
-    }
-}
-
-impl From<FemCurveRow> for Value {
-    fn from(row: FemCurveRow) -> Self {
-        Self {
-            waves: row.waves,
-            realisation: row.realisation,
-            speed_mm_s: row.speed_mm_s,
-            contact_area_fraction: row.contact_area_fraction,
-            pressure_mpa: row.pressure_mpa,
-            friction_coefficient: row.friction_coefficient,
-            interpolation_error: row.interpolation_error,
-            discretisation_error: row.discretisation_error,
-            left_out_error: 0.0,
-        }
-    }
-}
-
-fn value_of(row: &HybridRow) -> Option<Value> {
-    Some(Value {
-        waves: row.waves,
-        realisation: row.realisation,
-        speed_mm_s: row.speed_mm_s,
-        contact_area_fraction: row.contact_area_fraction,
-        pressure_mpa: row.pressure_mpa,
-        friction_coefficient: row.friction_coefficient?,
-        interpolation_error: row.interpolation_error,
-        discretisation_error: row.discretisation_error,
-        left_out_error: row.left_out_error,
-    })
-}
-
 /// The values at areas for which every realisation of the half-space has one: an average over some of
 /// them would be one over the less pressed ones.
-fn complete(values: Vec<Value>, half_space: &[Value]) -> Vec<Value> {
-    let counts = |values: &[Value]| {
+fn complete(values: Vec<FrictionAt>, half_space: &[FrictionAt]) -> Vec<FrictionAt> {
+    let counts = |values: &[FrictionAt]| {
         let mut counts = BTreeMap::new();
         values.iter().for_each(|value| *counts.entry(key(value)).or_insert(0) += 1);
         counts
     };
     let (present, wanted): (BTreeMap<_, u32>, _) = (counts(&values), counts(half_space));
-    let full = |value: &Value| Some(&present[&key(value)]) == wanted.get(&key(value));
+    let full = |value: &FrictionAt| Some(&present[&key(value)]) == wanted.get(&key(value));
     values.into_iter().filter(full).collect()
 }
 
 /// What the values of one average have in common.
-fn key(value: &Value) -> (u32, u64, u64) {
-    (value.waves, value.speed_mm_s.to_bits(), value.contact_area_fraction.to_bits())
+fn key(value: &FrictionAt) -> (u32, u64, u64) {
+    (value.curve.waves, value.curve.speed_mm_s.to_bits(), value.contact_area_fraction.to_bits())
 }
 
 /// One row for each number of waves, speed and area, ascending.
-fn average(model: &str, mut curves: Vec<Value>) -> Vec<FrictionRow> {
-    let order = |a: &Value, b: &Value| {
-        a.waves
-            .cmp(&b.waves)
-            .then(a.speed_mm_s.total_cmp(&b.speed_mm_s))
+fn average(model: Model, mut curves: Vec<FrictionAt>) -> Vec<FrictionRow> {
+    let order = |a: &FrictionAt, b: &FrictionAt| {
+        a.curve
+            .waves
+            .cmp(&b.curve.waves)
+            .then(a.curve.speed_mm_s.total_cmp(&b.curve.speed_mm_s))
             .then(a.contact_area_fraction.total_cmp(&b.contact_area_fraction))
     };
-    curves.sort_by(|a, b| order(a, b).then(a.realisation.cmp(&b.realisation)));
+    curves.sort_by(|a, b| order(a, b).then(a.curve.realisation.cmp(&b.curve.realisation)));
     curves.chunk_by(|a, b| order(a, b).is_eq()).map(|values| row(model, values)).collect()
 }
 
-fn row(model: &str, curves: &[Value]) -> FrictionRow {
+fn row(model: Model, curves: &[FrictionAt]) -> FrictionRow {
     let realisations: Vec<f64> = curves.iter().map(|c| c.friction_coefficient).collect();
     let estimate = MeanEstimate::of(&realisations);
     let present = |value: f64| value.is_finite().then_some(value);
     let first = &curves[0];
     let count = curves.len() as f64;
-    let mean = |error: fn(&Value) -> f64| curves.iter().map(error).sum::<f64>() / count;
+    let mean = |error: fn(&FrictionAt) -> f64| curves.iter().map(error).sum::<f64>() / count;
     let discretisation_error = curves
         .iter()
         .map(|curve| curve.discretisation_error)
@@ -417,9 +358,9 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
     let statistical_error = present(estimate.confidence_95);
     let solved = discretisation_error.map(|error| error + interpolation_error + left_out_error);
     FrictionRow {
-        model: model.into(),
-        waves: first.waves,
-        speed_mm_s: first.speed_mm_s,
+        model,
+        waves: first.curve.waves,
+        speed_mm_s: first.curve.speed_mm_s,
         contact_area_fraction: first.contact_area_fraction,
         realisations,
         half_space_realisations: None,
@@ -440,13 +381,12 @@ fn row(model: &str, curves: &[Value]) -> FrictionRow {
 
 #[cfg(test)]
 mod tests {
+    use super::super::friction::CurveId;
     use super::*;
 
-    pub(super) fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> Value {
-        Value {
-            waves,
-            realisation,
-            speed_mm_s: 10.0,
+    pub(super) fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> FrictionAt {
+        FrictionAt {
+            curve: CurveId { waves, realisation, speed_mm_s: 10.0 },
             contact_area_fraction: area,
             pressure_mpa: friction,
             friction_coefficient: friction,
@@ -468,7 +408,7 @@ mod tests {
     #[test]
     fn rows_are_averaged_over_realisations_whatever_their_order() {
         let rows = average(
-            BEM,
+            Model::Bem,
             vec![
                 curve(9, 1, 0.1, 7.0),
                 curve(8, 2, 0.1, 3.0),
@@ -491,7 +431,7 @@ mod tests {
         );
         assert_eq!((rows[2].waves, rows[2].confidence_95), (9, None));
         assert_eq!((rows[2].discretisation_error, rows[2].error_estimate), (Some(3.5e-3), None));
-        let unknown = row(BEM, &[curve(8, 1, 0.1, 1.0), curve(8, 9, 0.1, 1.1)]);
+        let unknown = row(Model::Bem, &[curve(8, 1, 0.1, 1.0), curve(8, 9, 0.1, 1.1)]);
         assert_eq!((unknown.discretisation_error, unknown.error_estimate), (None, None));
     }
 }

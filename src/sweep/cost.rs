@@ -14,6 +14,7 @@ use crate::stages::bem::{self, SolveRow};
 use crate::stages::fem::{self, Fem};
 use crate::stages::kept::SolveTask;
 use crate::stages::{StageError, Watch};
+use crate::units::Units;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -116,7 +117,7 @@ impl<'a> Costs<'a> {
                 trial.map_or_else(
                     || Cost {
                         seconds: SECONDS_PER_POINT_AND_ITERATION * TYPICAL_ITERATIONS * grid_points,
-                        megabytes: 2.0 * grid_points * BYTES_PER_POINT / 1e6,
+                        megabytes: (2.0 * grid_points * BYTES_PER_POINT).bytes_to_megabytes(),
                     },
                     |trial| trial.scaled(task.speed_mm_s, grid_points),
                 )
@@ -156,7 +157,7 @@ impl Trial {
         Cost {
             seconds: scale * between(first.1, last.1),
             // A contact is kept on all of its grids: twice the finest one.
-            megabytes: 2.0 * scale * first.2.max(last.2) * BYTES_PER_POINT / 1e6,
+            megabytes: (2.0 * scale * first.2.max(last.2) * BYTES_PER_POINT).bytes_to_megabytes(),
         }
     }
 }

@@ -48,6 +48,7 @@ impl SweepFrictionRow {
 mod tests {
     use super::*;
     use crate::artifact::{Metadata, columns, read_table, write_table};
+    use crate::stages::tables::Model;
 
     #[test]
     fn the_columns_are_the_keys_and_those_of_a_case() {
@@ -63,7 +64,7 @@ mod tests {
     #[test]
     fn a_row_reads_back() {
         let friction = FrictionRow {
-            model: "bem".into(),
+            model: Model::Bem,
             waves: 8,
             speed_mm_s: 10.0,
             contact_area_fraction: 0.05,

@@ -16,6 +16,7 @@ use asperity::stages::fem::FEM_SOLVES;
 use asperity::stages::hybrid::{HYBRID, HybridRow, LOCAL};
 use asperity::stages::micro::{LAW, SAMPLES, SampleRow};
 use asperity::stages::realise::read_surfaces;
+use asperity::stages::tables::Model;
 use asperity::stages::tables::{CORRECTIONS, FRICTION, MODELS};
 use asperity::surface::{Wave, wave};
 use std::path::Path;
@@ -167,13 +168,14 @@ fn the_tables_have_every_model_and_how_far_they_are_apart() {
     let campaign = campaign(0.016, "[fem]\ncolumns_per_shortest_wavelength = 24");
     let (_, view) = solved(&campaign);
     let friction = view.rows(FRICTION).unwrap();
-    let of = |model: &str| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
-    for model in ["bem", "hybrid", "fem"] {
+    let of = |model: Model| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
+    for model in [Model::Bem, Model::Hybrid, Model::Fem] {
         assert_eq!(of(model).len(), 2, "{model}");
     }
     let models = view.rows(MODELS).unwrap();
-    let hybrid = models.iter().find(|r| r.model == "hybrid" && r.reference == "fem").unwrap();
-    let pairs = of("hybrid").into_iter().zip(of("fem"));
+    let hybrid =
+        models.iter().find(|r| r.model == Model::Hybrid && r.reference == Model::Fem).unwrap();
+    let pairs = of(Model::Hybrid).into_iter().zip(of(Model::Fem));
     let by_hand = pairs.map(|(a, b)| (a.mean / b.mean - 1.0).abs()).sum::<f64>() / 2.0;
     assert!((hybrid.relative_error_of_averages - by_hand).abs() < 1e-12);
     let solves = view.rows(FEM_SOLVES).unwrap();
@@ -353,9 +355,9 @@ fn an_accuracy_brings_the_errors_by_the_mesh_into_the_tables() {
         assert_ne!(row.discretisation_error.unwrap(), 0.0, "{row:?}");
         assert!(row.error_estimate.unwrap() > row.confidence_95.unwrap(), "{row:?}");
     }
-    let of = |model: &str| rows.iter().filter(|row| row.model == model).count();
-    assert_eq!((of("bem"), of("hybrid")), (2, 2));
-    assert!(of("fem") > 0);
+    let of = |model: Model| rows.iter().filter(|row| row.model == model).count();
+    assert_eq!((of(Model::Bem), of(Model::Hybrid)), (2, 2));
+    assert!(of(Model::Fem) > 0);
 }
 
 /// A published correction at a sampled pressure stands beside that sample; one between two, between them; one beyond

@@ -12,6 +12,7 @@ use asperity::stages;
 use asperity::stages::bem::CURVES;
 use asperity::stages::fem::FEM;
 use asperity::stages::multilevel::{AVERAGES, AverageRow, Estimate, FURTHER, PAIRS, PairRow};
+use asperity::stages::tables::Model;
 use asperity::stages::tables::{FRICTION, FrictionRow, MODELS};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -107,14 +108,15 @@ fn the_average_is_the_mean_of_the_half_space_plus_the_mean_difference_of_the_pai
     assert_eq!((row.half_space_realisations, row.pairs, row.model_error), (12, 4, 0.0));
 
     let friction = view.rows(FRICTION).unwrap();
-    let table: Vec<&FrictionRow> = friction.iter().filter(|r| r.model == "multilevel").collect();
+    let table: Vec<&FrictionRow> =
+        friction.iter().filter(|r| r.model == Model::Multilevel).collect();
     assert_eq!((table.len(), table[1].mean), (2, row.friction_coefficient));
     assert_eq!(table[1].confidence_95, row.confidence_95);
     assert_eq!(table[1].half_space_realisations, Some(12));
     let full: Vec<f64> = own.iter().map(|row| row.friction_finite_deformation).collect();
     assert_eq!(table[1].realisations, full);
     let models = view.rows(MODELS).unwrap();
-    assert!(models.iter().any(|r| r.model == "bem" && r.reference == "multilevel"));
+    assert!(models.iter().any(|r| r.model == Model::Bem && r.reference == Model::Multilevel));
 }
 
 #[test]
@@ -176,7 +178,7 @@ fn a_gentle_surface_has_no_finite_elements_and_the_bound_among_its_errors() {
         assert!(row.error_estimate.unwrap() <= 0.2 * row.friction_coefficient, "{row:?}");
     }
     let friction = view.rows(FRICTION).unwrap();
-    let row = friction.iter().find(|row| row.model == "multilevel").unwrap();
+    let row = friction.iter().find(|row| row.model == Model::Multilevel).unwrap();
     assert_eq!((row.realisations.len(), row.standard_deviation), (0, None));
     assert!(row.model_error.unwrap() > 0.0);
 }

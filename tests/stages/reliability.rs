@@ -5,7 +5,8 @@ use asperity::artifact::RunView;
 use asperity::stages;
 use asperity::stages::approximate::FITS;
 use asperity::stages::characterise::{
-    AGREEMENT, AVERAGE, CORRELATION, HURST, LARGEST_DIFFERENCE_KEY, RELIABLE_KEY, SPECTRUM,
+    AGREEMENT, AVERAGE, CORRELATION, HURST, HurstMethod, LARGEST_DIFFERENCE_KEY, RELIABLE_KEY,
+    SPECTRUM,
 };
 use asperity::stages::tables::FRICTION;
 
@@ -52,5 +53,5 @@ fn conventions_and_the_cosine_check_stand_in_the_artifacts() {
     let warned = warnings.iter().any(|warning| warning.contains("correlation differ"));
     assert_eq!(warned, largest > 0.1);
     let rows = view.rows(HURST).unwrap();
-    assert!(rows.iter().any(|row| row.scan == AVERAGE && row.method == "correlation"));
+    assert!(rows.iter().any(|row| row.scan == AVERAGE && row.method == HurstMethod::Correlation));
 }

@@ -9,6 +9,7 @@ use asperity::pipeline::Selection;
 use asperity::recipe::Recipe;
 use asperity::rubber::{Rheology, Rubber, read_rubber};
 use asperity::stages;
+use asperity::stages::sinusoid::Model;
 use asperity::stages::sinusoid::{
     AGREEMENT, ASYMPTOTES, FIELDS, FieldRow, POINTS, PRESSURES, PointRow,
 };
@@ -43,14 +44,14 @@ fn study() -> (Campaign, Recipe) {
 fn direct(rubber: &Rubber, row: &PointRow, columns: usize) -> Option<f64> {
     let wave = Wave { wavelength: 2e-5, amplitude: row.aspect_ratio * 2e-5, phase: 0.0 };
     let (speed, pressure) = (row.speed_mm_s / 1e3, row.pressure_mpa * 1e6);
-    let rheology = match row.model.as_str() {
-        "half-space" => {
+    let rheology = match row.model {
+        Model::HalfSpace => {
             let heights = wave::sample(&[wave], 2e-5, columns);
             let mut contact = SlidingContact::new(rubber, speed, 2e-5, &heights).unwrap();
             return Some(contact.solve(pressure).unwrap().friction_coefficient);
         }
-        "linear" => Rheology::Linear,
-        _ => Rheology::NeoHookean,
+        Model::Linear => Rheology::Linear,
+        Model::NeoHookean => Rheology::NeoHookean,
     };
     let profile = RigidProfile::from_waves(&[wave], 2e-5);
     let options = BlockOptions::of_profile(columns, &profile);
@@ -81,7 +82,8 @@ fn every_point_is_a_solution_or_says_that_there_is_none() {
         }
     }
     // The half-space has a solution at every pressure, and its slow and fast limits are elastic.
-    let half_space: Vec<&PointRow> = points.iter().filter(|r| r.model == "half-space").collect();
+    let half_space: Vec<&PointRow> =
+        points.iter().filter(|r| r.model == Model::HalfSpace).collect();
     assert!(half_space.iter().all(|row| row.friction_coefficient.is_some()));
     let limits = view.rows(ASYMPTOTES).unwrap();
     let slow = half_space[0].contact_area_fraction.unwrap();
@@ -108,9 +110,9 @@ fn fields_and_pressures_are_as_the_recipe_asks() {
     run(&recipe, &out);
     let view = RunView::of(&out);
     let fields = view.rows(FIELDS).unwrap();
-    for model in ["half-space", "neo-hookean"] {
+    for model in [Model::HalfSpace, Model::NeoHookean] {
         let rows: Vec<&FieldRow> = fields.iter().filter(|row| row.model == model).collect();
-        assert_eq!(rows.len(), if model == "half-space" { 512 } else { 24 });
+        assert_eq!(rows.len(), if model == Model::HalfSpace { 512 } else { 24 });
         assert!(rows.windows(2).all(|pair| pair[0].x_mm < pair[1].x_mm));
         for row in rows {
             // Closed to round-off, or to the residual of the steady solver over 4 µm of height.
@@ -120,7 +122,8 @@ fn fields_and_pressures_are_as_the_recipe_asks() {
     }
     let pressures = view.rows(PRESSURES).unwrap();
     assert_eq!(pressures.len(), 3 * 3);
-    let beyond = pressures.iter().find(|r| r.model == "linear" && r.pressure_mpa == 30.0).unwrap();
+    let beyond =
+        pressures.iter().find(|r| r.model == Model::Linear && r.pressure_mpa == 30.0).unwrap();
     assert_eq!((beyond.friction_coefficient, beyond.contact_area_fraction), (None, None));
     assert!(beyond.path_ended_at_mpa.unwrap() < 30.0);
     assert!(beyond.why_missing.as_ref().unwrap().contains("the path ended at"));

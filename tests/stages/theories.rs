@@ -7,6 +7,7 @@ use asperity::rubber::read_rubber;
 use asperity::stages;
 use asperity::stages::bem::CURVES;
 use asperity::stages::realise::read_surfaces;
+use asperity::stages::tables::Model;
 use asperity::stages::tables::{FRICTION, MODELS, THEORIES, TheoryRow};
 use asperity::surface::SineScale;
 use asperity::theory::Persson;
@@ -35,15 +36,19 @@ fn theories_stand_beside_the_half_space_where_they_are_asked_for() {
     assert!(warnings.len() == 1 && warnings[0].contains("layer_ratio"), "{warnings:?}");
 
     let friction = view.rows(FRICTION).unwrap();
-    let of = |model: &str| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
-    let areas = |model: &str| of(model).iter().map(|r| r.contact_area_fraction).collect::<Vec<_>>();
-    for model in ["persson", "klueppel-heinrich"] {
-        assert_eq!(areas(model), areas("bem"));
+    let of = |model: Model| friction.iter().filter(|row| row.model == model).collect::<Vec<_>>();
+    let areas =
+        |model: Model| of(model).iter().map(|r| r.contact_area_fraction).collect::<Vec<_>>();
+    for model in [Model::Persson, Model::KlueppelHeinrich] {
+        assert_eq!(areas(model), areas(Model::Bem));
         assert!(of(model).iter().all(|row| row.realisations.len() == 2 && row.mean > 0.0));
     }
     let models = view.rows(MODELS).unwrap();
-    let pair = models.iter().find(|row| row.model == "persson" && row.reference == "bem").unwrap();
-    let pairs = of("persson").into_iter().zip(of("bem"));
+    let pair = models
+        .iter()
+        .find(|row| row.model == Model::Persson && row.reference == Model::Bem)
+        .unwrap();
+    let pairs = of(Model::Persson).into_iter().zip(of(Model::Bem));
     let by_hand = pairs.map(|(a, b)| a.mean / b.mean - 1.0).sum::<f64>() / 3.0;
     assert!((pair.bias - by_hand).abs() < 1e-12, "{pair:?}");
 }
@@ -70,7 +75,7 @@ fn a_theory_is_taken_at_the_pressure_of_its_own_area() {
     let rows = view.rows(THEORIES).unwrap();
     let half_space = view.rows(CURVES).unwrap();
     assert_eq!(rows.len(), 2 * half_space.len());
-    let of_surface = |row: &&TheoryRow| row.model == "persson" && row.realisation == 2;
+    let of_surface = |row: &&TheoryRow| row.model == Model::Persson && row.realisation == 2;
     for row in rows.iter().filter(of_surface) {
         let pressure = row.pressure_mpa * 1e6;
         let area = theory.contact_area_fraction(pressure);

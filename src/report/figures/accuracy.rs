@@ -8,7 +8,7 @@ use crate::report::read::rows;
 use crate::stages::bem::SOLVES;
 use crate::stages::fem::{FEM_SOLVES, FemSolveRow};
 use crate::stages::micro::SAMPLES;
-use crate::stages::tables::{FRICTION, FrictionRow};
+use crate::stages::tables::{FRICTION, FrictionRow, Model};
 
 /// Errors below this are round-off; they would stretch the axis.
 const LEAST_ERROR: f64 = 1e-12;
@@ -18,7 +18,7 @@ pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let mut panels: Vec<Panel> = solves(run)?.into_iter().collect();
     let friction = rows(run, FRICTION)?.unwrap_or_default();
     let half_space: Vec<FrictionRow> =
-        friction.into_iter().filter(|row| row.model == "bem").collect();
+        friction.into_iter().filter(|row| row.model == Model::Bem).collect();
     let tables = grouped(&half_space, |row| (row.waves, speed_key(row.speed_mm_s)));
     panels.extend(tables.into_values().filter_map(|rows| parts(&rows)));
     let caption = "Wall time of every contact against the estimated relative error of its friction \

@@ -5,7 +5,7 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow};
+use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, Model};
 
 const AREA: &str = "contact area fraction Ac/A0";
 const FRICTION_LABEL: &str = "friction coefficient µ";
@@ -31,7 +31,7 @@ pub(super) fn friction(run: &RunView) -> Result<Option<Figure>, ReportError> {
 
 /// Average, band and realisations of a model.
 fn model(rows: &[&FrictionRow]) -> Vec<Series> {
-    let (colour, dashed) = look(&rows[0].model);
+    let (colour, dashed) = look(rows[0].model);
     let count = rows[0].realisations.len();
     let average = rows.iter().map(|row| (row.contact_area_fraction, row.mean)).collect();
     let band: Vec<_> = rows
@@ -64,14 +64,14 @@ fn model(rows: &[&FrictionRow]) -> Vec<Series> {
 }
 
 /// Colour of a model and whether its line is dashed, the same in all figures.
-pub(super) fn look(model: &str) -> (usize, bool) {
+pub(super) fn look(model: Model) -> (usize, bool) {
     match model {
-        "bem" => (1, false),
-        "hybrid" => (2, true),
-        "fem" => (3, false),
-        "multilevel" => (5, false),
-        "persson" => (4, true),
-        _ => (6, true),
+        Model::Bem => (1, false),
+        Model::Hybrid => (2, true),
+        Model::Fem => (3, false),
+        Model::Multilevel => (5, false),
+        Model::Persson => (4, true),
+        Model::KlueppelHeinrich => (6, true),
     }
 }
 

@@ -8,7 +8,9 @@ use crate::report::tables::{About, FrictionTable, friction_tables};
 use crate::stages;
 use crate::stages::Stage;
 use crate::stages::bem::{REALISATIONS, RealisationsRow, SOLVES};
-use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, MODELS, ModelRow};
+use crate::stages::tables::{
+    COMPARISON, ComparisonRow, FRICTION, FrictionRow, MODELS, Model, ModelRow,
+};
 use maud::{Markup, html};
 
 const NO_TABLES: &str = "This run has no averaged friction yet: the stage tables is not there.";
@@ -98,18 +100,18 @@ impl Report<'_> {
 }
 
 fn models_in_words(rows: &[FrictionRow]) -> String {
-    let mut names: Vec<&str> = rows.iter().map(|row| row.model.as_str()).collect();
-    names.sort_unstable();
-    names.dedup();
-    let words = names.into_iter().map(|name| match name {
-        "bem" => "bem, the viscoelastic half-space".to_owned(),
-        "hybrid" => "hybrid, the half-space corrected by its steepest waves".into(),
-        "fem" => "fem, all waves at finite deformation".into(),
-        "multilevel" => {
+    let mut models: Vec<Model> = rows.iter().map(|row| row.model).collect();
+    models.sort_unstable_by_key(|model| model.name());
+    models.dedup();
+    let words = models.into_iter().map(|model| match model {
+        Model::Bem => "bem, the viscoelastic half-space".to_owned(),
+        Model::Hybrid => "hybrid, the half-space corrected by its steepest waves".into(),
+        Model::Fem => "fem, all waves at finite deformation".into(),
+        Model::Multilevel => {
             "multilevel, the half-space with the mean difference to all waves at finite deformation"
                 .into()
         }
-        other => format!("{other}, a theory"),
+        theory @ (Model::Persson | Model::KlueppelHeinrich) => format!("{theory}, a theory"),
     });
     words.collect::<Vec<_>>().join("; ")
 }
@@ -178,8 +180,8 @@ fn model_table(models: &[ModelRow]) -> Markup {
         2,
         models.iter().map(|row| {
             vec![
-                row.model.clone(),
-                row.reference.clone(),
+                row.model.to_string(),
+                row.reference.to_string(),
                 row.waves.to_string(),
                 row.speed_mm_s.to_string(),
                 row.from_area_fraction.to_string(),
@@ -213,7 +215,7 @@ fn error_table(rows: &[FrictionRow]) -> Markup {
         1,
         rows.iter().map(|row| {
             vec![
-                row.model.clone(),
+                row.model.to_string(),
                 row.waves.to_string(),
                 row.speed_mm_s.to_string(),
                 row.contact_area_fraction.to_string(),

@@ -38,7 +38,7 @@ impl Report<'_> {
                 (table("Hurst exponent H by two routes",
                     &["route", "H", "95 % from", "95 % to", "from / mm", "to / mm", "residual of log10"], 1,
                     average.iter().map(|row| vec![
-                        row.method.clone(), number(row.hurst_exponent, 3),
+                        row.method.to_string(), number(row.hurst_exponent, 3),
                         optional(row.hurst_exponent_lower, 3), optional(row.hurst_exponent_upper, 3),
                         number(row.shortest_mm, 3), number(row.longest_mm, 3),
                         number(row.rms_residual_log10, 2),

@@ -35,7 +35,7 @@ fn point_table(rows: &[PointRow]) -> Markup {
         1,
         rows.iter().map(|row| {
             vec![
-                row.model.clone(),
+                row.model.to_string(),
                 number(row.speed_mm_s, 3),
                 number(row.deborah_number, 3),
                 optional(row.friction_coefficient, 4),

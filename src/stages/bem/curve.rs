@@ -14,6 +14,7 @@ use crate::stages::SolveError;
 use crate::stages::kept::{self, Kept};
 use crate::stages::realise::Surface;
 use crate::surface::wave;
+use crate::units::Units;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -130,7 +131,7 @@ impl<'a> Curve<'a> {
         let Some(steepest) = profile.iter().max_by(|a, b| slope(a).total_cmp(&slope(b))) else {
             return 1e5;
         };
-        let frequency = TAU / steepest.wavelength * speed_mm_s / 1e3;
+        let frequency = (TAU / steepest.wavelength * speed_mm_s).mm_to_m();
         let rms_slope = profile.iter().map(|w| (TAU * slope(w)).powi(2) / 2.0).sum::<f64>().sqrt();
         0.5 * area * rubber.reduced_modulus(frequency).norm() * rms_slope
     }
@@ -186,7 +187,7 @@ impl<'a> Curve<'a> {
 
     fn keep(&mut self, row: SolveRow, error: Option<GridError>) -> CurvePoint {
         let point = CurvePoint {
-            mean_pressure: row.pressure_mpa * 1e6,
+            mean_pressure: row.pressure_mpa.mpa_to_pa(),
             contact_area_fraction: row.contact_area_fraction,
             friction_coefficient: row.friction_coefficient,
             error,
@@ -228,11 +229,11 @@ impl Grids<'_> {
             waves: self.surface.waves,
             realisation: self.surface.realisation,
             speed_mm_s: self.speed_mm_s,
-            pressure_mpa: pressure / 1e6,
+            pressure_mpa: pressure.pa_to_mpa(),
             friction_coefficient: solution.friction_coefficient,
             hysteretic_friction: solution.hysteretic_friction,
             contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
+            mean_separation_mm: solution.mean_separation.m_to_mm(),
             discretisation_error: None,
             residual: solution.residual,
             iterations: solution.iterations as u64,
@@ -260,7 +261,7 @@ impl Grids<'_> {
                 let heights =
                     wave::sample_while(&self.surface.profile, self.period, points, goes_on)
                         .ok_or(SolveError::Interrupted)?;
-                let speed = self.speed_mm_s / 1e3;
+                let speed = self.speed_mm_s.mm_to_m();
                 Ok(place.insert(SlidingContact::new_interruptible(
                     self.rubber,
                     speed,

@@ -15,6 +15,7 @@ use super::ensemble::FIRST_REALISATIONS;
 use crate::numerics::statistics::MeanEstimate;
 use crate::rubber::Rubber;
 use crate::stages::realise::Surface;
+use crate::units::Units;
 use std::f64::consts::TAU;
 
 /// Of the tolerance that left-out waves may take.
@@ -96,11 +97,11 @@ impl LeftOut {
         let shear = |wave: &usize| {
             let wave = surface.profile[*wave];
             let q = TAU / wave.wavelength;
-            let loss = rubber.reduced_modulus(q * row.speed_mm_s / 1e3).im;
+            let loss = rubber.reduced_modulus((q * row.speed_mm_s).mm_to_m()).im;
             (q * wave.amplitude).powi(2) * loss / 4.0
         };
         let in_full_contact: f64 = self.short.iter().map(shear).sum();
-        in_full_contact * row.contact_area_fraction / (row.pressure_mpa * 1e6)
+        in_full_contact * row.contact_area_fraction / row.pressure_mpa.mpa_to_pa()
     }
 
     fn without_longest(&self, surface: &Surface) -> Option<Self> {

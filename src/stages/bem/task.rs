@@ -10,6 +10,7 @@ use crate::rubber::Rubber;
 use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError, Watch};
+use crate::units::Units;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -64,7 +65,7 @@ impl SolveTask for Task {
             realisation: surface.realisation,
             speed_mm_s: *speed_mm_s,
             contact_area_fraction: value.contact_area_fraction,
-            pressure_mpa: value.mean_pressure / 1e6,
+            pressure_mpa: value.mean_pressure.pa_to_mpa(),
             friction_coefficient: value.friction_coefficient,
             interpolation_error: value.interpolation_error,
             discretisation_error: value.discretisation_error,

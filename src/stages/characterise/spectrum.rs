@@ -8,6 +8,7 @@ use crate::surface::spectrum::{
     self_affine_isotropic,
 };
 use crate::surface::{HeightDifferenceCorrelation, spectrum::SpectrumError};
+use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -87,6 +88,25 @@ impl Row for IsotropicRow {
     const VERSION: u32 = 2;
 }
 
+/// What a Hurst exponent is read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum HurstMethod {
+    /// The slope of the height-difference correlation.
+    Correlation,
+    /// The slope of the power spectral density.
+    Spectrum,
+}
+
+impl std::fmt::Display for HurstMethod {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Correlation => "correlation",
+            Self::Spectrum => "spectrum",
+        })
+    }
+}
+
 /// Hurst exponent by one of two methods, with the range it was fitted on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HurstRow {
@@ -94,7 +114,7 @@ pub struct HurstRow {
     pub scan: String,
     /// `correlation`: half the slope of log C below the bend of the self-affine fit; `spectrum`: the
     /// slope -(1 + 2 H) of the logarithm of the binned density.
-    pub method: String,
+    pub method: HurstMethod,
     /// Hurst exponent H.
     #[schemars(extend("unit" = "1"))]
     pub hurst_exponent: f64,
@@ -180,10 +200,10 @@ pub(super) fn spectrum_rows(
 fn spectrum_row(scan: &str, route: &str, bin: &SpectrumBin) -> SpectrumRow {
     SpectrumRow {
         scan: scan.to_owned(),
-        wavenumber_rad_mm: bin.wavenumber / 1e3,
-        density_mm3: bin.density * 1e9,
-        standard_error_mm3: bin.standard_error * 1e9,
-        geometric_density_mm3: bin.geometric_density.map(|density| density * 1e9),
+        wavenumber_rad_mm: bin.wavenumber.per_m_to_per_mm(),
+        density_mm3: bin.density.m3_to_mm3(),
+        standard_error_mm3: bin.standard_error.m3_to_mm3(),
+        geometric_density_mm3: bin.geometric_density.map(|density| density.m3_to_mm3()),
         geometric_bias: bin.geometric_bias,
         frequencies: bin.count as u64,
         route: route.to_owned(),
@@ -212,24 +232,25 @@ pub(super) fn hurst_rows(
 ) -> (Vec<HurstRow>, Vec<String>) {
     let average = self_affine.iter().find(|row| row.scan == AVERAGE);
     let bend = average.map_or(0.0, |row| row.parallel_length_mm);
-    let shortest = parameters.hurst_shortest_wavelength_mm.map_or(shortest_reliable, |mm| mm / 1e3);
-    let longest = parameters.hurst_longest_wavelength_mm.unwrap_or(bend) / 1e3;
+    let shortest =
+        parameters.hurst_shortest_wavelength_mm.map_or(shortest_reliable, |mm| mm.mm_to_m());
+    let longest = parameters.hurst_longest_wavelength_mm.unwrap_or(bend).mm_to_m();
     let per_decade = parameters.spectrum_bins_per_decade;
     let of_spectrum = |name: &str, spectra: &[PowerSpectrum]| {
         fit_hurst_exponent(spectra, per_decade, shortest, longest).map(|fit| HurstRow {
             scan: name.to_owned(),
-            method: "spectrum".to_owned(),
+            method: HurstMethod::Spectrum,
             hurst_exponent: fit.hurst_exponent,
             hurst_exponent_lower: fit.hurst_exponent_95.map(|interval| interval.lower),
             hurst_exponent_upper: fit.hurst_exponent_95.map(|interval| interval.upper),
-            shortest_mm: fit.shortest_wavelength * 1e3,
-            longest_mm: fit.longest_wavelength * 1e3,
+            shortest_mm: fit.shortest_wavelength.m_to_mm(),
+            longest_mm: fit.longest_wavelength.m_to_mm(),
             rms_residual_log10: fit.rms_residual,
         })
     };
     let of_correlation = |row: &SelfAffineRow| HurstRow {
         scan: row.scan.clone(),
-        method: "correlation".to_owned(),
+        method: HurstMethod::Correlation,
         hurst_exponent: row.hurst_exponent,
         hurst_exponent_lower: row.hurst_exponent_lower,
         hurst_exponent_upper: row.hurst_exponent_upper,
@@ -265,16 +286,17 @@ pub(super) fn hurst_rows(
 /// The isotropic spectrum at the bins of the average that have power; none for fewer than two.
 pub(super) fn isotropic_rows(spectrum: &[SpectrumRow], hurst: &[HurstRow]) -> Vec<IsotropicRow> {
     let average = spectrum.iter().filter(|row| row.scan == AVERAGE && row.density_mm3 > 0.0);
-    let (wavenumbers, densities): (Vec<f64>, Vec<f64>) =
-        average.map(|row| (row.wavenumber_rad_mm * 1e3, row.density_mm3 / 1e9)).unzip();
+    let (wavenumbers, densities): (Vec<f64>, Vec<f64>) = average
+        .map(|row| (row.wavenumber_rad_mm.per_mm_to_per_m(), row.density_mm3.mm3_to_m3()))
+        .unzip();
     let exponent = hurst
         .iter()
-        .find(|row| row.scan == AVERAGE && row.method == "spectrum")
+        .find(|row| row.scan == AVERAGE && row.method == HurstMethod::Spectrum)
         .map(|row| row.hurst_exponent)
         .filter(|&exponent| exponent > -0.5);
     let Ok(inverse) = abel_inverse(&wavenumbers, &densities) else { return Vec::new() };
     let row = |((&q, &line), density): ((&f64, &f64), f64)| IsotropicRow {
-        wavenumber_rad_mm: q / 1e3,
+        wavenumber_rad_mm: q.per_m_to_per_mm(),
         abel_density_mm4: finite(density * 1e12),
         self_affine_density_mm4: exponent
             .and_then(|exponent| finite(self_affine_isotropic(q, line, exponent) * 1e12)),
@@ -292,9 +314,9 @@ pub(super) fn agreement_rows(
 ) -> (Vec<AgreementRow>, Metadata, Vec<String>) {
     let compared = agreement(spectrum, correlation, shortest_reliable / 2.0, per_decade);
     let row = |compared: &Agreement| AgreementRow {
-        lag_mm: compared.lag * 1e3,
-        correlation_mm2: compared.correlation * 1e6,
-        from_spectrum_mm2: compared.from_spectrum * 1e6,
+        lag_mm: compared.lag.m_to_mm(),
+        correlation_mm2: compared.correlation.m2_to_mm2(),
+        from_spectrum_mm2: compared.from_spectrum.m2_to_mm2(),
         relative_difference: compared.relative_difference(),
     };
     // Flat scans have a correlation of 0, and nothing differs from it in relation.

@@ -8,6 +8,7 @@ use crate::surface::filter::{ProfileFilter, waviness};
 use crate::surface::profile::{ProfileParameters, profile_parameters};
 use crate::surface::texture::{DepthError, DepthOptions, mean_profile_depths, texture_bands};
 use crate::surface::{LineScan, PowerSpectrum};
+use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -51,7 +52,7 @@ impl Default for ProfileDepth {
             most_drop_outs: usual.most_drop_outs,
             spike_slope: usual.spike_slope,
             low_pass_mm: 2.4,
-            high_pass_mm: usual.high_pass.map(|metres| metres * 1e3),
+            high_pass_mm: usual.high_pass.map(|metres| metres.m_to_mm()),
         }
     }
 }
@@ -79,11 +80,11 @@ impl ProfileDepth {
 
     fn options(&self) -> DepthOptions {
         DepthOptions {
-            segment: self.segment_mm / 1e3,
+            segment: self.segment_mm.mm_to_m(),
             most_drop_outs: self.most_drop_outs,
             spike_slope: self.spike_slope,
-            low_pass: self.low_pass_mm / 1e3,
-            high_pass: self.high_pass_mm.map(|mm| mm / 1e3),
+            low_pass: self.low_pass_mm.mm_to_m(),
+            high_pass: self.high_pass_mm.map(|mm| mm.mm_to_m()),
         }
     }
 }
@@ -200,7 +201,7 @@ pub(super) fn profile_rows(
     ];
     let longer = |(key, mm): (&str, Option<f64>)| {
         let mm = mm?;
-        let mm_of = |points: usize, window: &LineScan| points as f64 * window.spacing * 1e3;
+        let mm_of = |points: usize, window: &LineScan| (points as f64 * window.spacing).m_to_mm();
         // A window cut to whole points is up to one spacing shorter than what was asked for.
         let is_longer = |w: &&LineScan| mm >= mm_of(evaluated(parameters, w).len() + 1, w);
         let window = windows.iter().find(is_longer).filter(|_| !rows.is_empty())?;
@@ -216,14 +217,14 @@ pub(super) fn profile_rows(
 }
 
 fn length_mm(window: &LineScan) -> f64 {
-    window.heights.len() as f64 * window.spacing * 1e3
+    (window.heights.len() as f64 * window.spacing).m_to_mm()
 }
 
 /// Why cut-offs and sections do not fit a window, if they do not.
 fn misfit(parameters: &Characterise, window: &LineScan) -> Option<String> {
     /// Fewer points show no peak between two valleys.
     const FEWEST_POINTS: usize = 5;
-    let (spacing_mm, length_mm) = (window.spacing * 1e3, length_mm(window));
+    let (spacing_mm, length_mm) = (window.spacing.m_to_mm(), length_mm(window));
     let (evaluated, points) = (evaluated(parameters, window), section_points(parameters, window));
     match (parameters.lambda_c_mm, parameters.lambda_s_mm) {
         (Some(mm), _) if mm < 2.0 * spacing_mm => Some(format!(
@@ -261,22 +262,22 @@ fn profile_row(parameters: &Characterise, window: &LineScan) -> Result<ProfileRo
         return Err(format!(
             "its sections of {:.4} mm lie on one side of the mean line; set \
              characterise.lambda_c_mm to take long waves off, or a longer section_length_mm",
-            points as f64 * spacing * 1e3
+            (points as f64 * spacing).m_to_mm()
         ));
     }
     Ok(ProfileRow {
         scan: window.name.clone(),
-        section_length_mm: points as f64 * spacing * 1e3,
+        section_length_mm: (points as f64 * spacing).m_to_mm(),
         sections: sections as u64,
-        ra_mm: ra * 1e3,
-        rq_mm: rq * 1e3,
-        rp_mm: rp * 1e3,
-        rv_mm: rv * 1e3,
-        rz_mm: rz * 1e3,
-        rt_mm: rt * 1e3,
+        ra_mm: ra.m_to_mm(),
+        rq_mm: rq.m_to_mm(),
+        rp_mm: rp.m_to_mm(),
+        rv_mm: rv.m_to_mm(),
+        rz_mm: rz.m_to_mm(),
+        rt_mm: rt.m_to_mm(),
         rsk,
         rku,
-        rsm_mm: rsm.map(|metres| metres * 1e3),
+        rsm_mm: rsm.map(|metres| metres.m_to_mm()),
         rdq,
     })
 }
@@ -301,9 +302,8 @@ fn section_points(parameters: &Characterise, window: &LineScan) -> usize {
     let points = evaluated(parameters, window).len();
     match parameters.section_length_mm.or(parameters.lambda_c_mm) {
         // Round-off must not cost a point; a section longer than what counts is all of it.
-        Some(mm) => {
-            ((mm / 1e3 / window.spacing * (1.0 + 1e-9)).floor() as usize).clamp(1, points.max(1))
-        }
+        Some(mm) => ((mm.mm_to_m() / window.spacing * (1.0 + 1e-9)).floor() as usize)
+            .clamp(1, points.max(1)),
         None => (points / SECTIONS).max(1),
     }
 }
@@ -311,7 +311,7 @@ fn section_points(parameters: &Characterise, window: &LineScan) -> usize {
 /// What the filters leave: waves longer than lambda_s, shorter than lambda_c.
 fn roughness(parameters: &Characterise, window: &LineScan) -> Vec<f64> {
     let filtered = |heights: &[f64], mm: f64| {
-        waviness(heights, window.spacing, mm / 1e3, parameters.profile_filter)
+        waviness(heights, window.spacing, mm.mm_to_m(), parameters.profile_filter)
     };
     let primary = match parameters.lambda_s_mm {
         // The filters bridge gaps; what was missing stays missing.
@@ -338,9 +338,9 @@ pub(super) fn depth_rows(
         let depths = mean_profile_depths(&window.heights, window.spacing, &options)?;
         let row = |segment: crate::surface::texture::SegmentDepth| DepthRow {
             scan: window.name.clone(),
-            start_mm: segment.start * 1e3,
+            start_mm: segment.start.m_to_mm(),
             interpolated_share: segment.interpolated,
-            depth_mm: segment.depth.filter(|depth| depth.is_finite()).map(|depth| depth * 1e3),
+            depth_mm: segment.depth.filter(|depth| depth.is_finite()).map(|depth| depth.m_to_mm()),
         };
         Ok(depths.into_iter().map(row).collect())
     };
@@ -389,9 +389,9 @@ pub(super) fn texture_rows(
         let bands = texture_bands(spectrum).into_iter().filter(|band| band.mean_square > 0.0);
         let row = |band: crate::surface::texture::TextureBand| TextureRow {
             scan: scan.to_owned(),
-            wavelength_mm: band.wavelength * 1e3,
+            wavelength_mm: band.wavelength.m_to_mm(),
             level_db: band.level(),
-            mean_square_mm2: band.mean_square * 1e6,
+            mean_square_mm2: band.mean_square.m2_to_mm2(),
         };
         bands.map(row).collect()
     };

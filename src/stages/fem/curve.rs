@@ -11,6 +11,7 @@ use crate::rubber::{Rheology, Rubber};
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, Watch};
+use crate::units::Units;
 use serde_json::{Value, json};
 
 /// Revision of the solver: part of the key of every stored solve.
@@ -61,7 +62,7 @@ impl<'a> Solver<'a> {
             let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
             let profile = RigidProfile::from_waves(waves, period);
             let options = BlockOptions::of_profile(columns, &profile);
-            let (law, speed) = (Rheology::NeoHookean, speed_mm_s / 1e3);
+            let (law, speed) = (Rheology::NeoHookean, speed_mm_s.mm_to_m());
             Ok(SteadyContact::new(rubber, law, speed, profile, options)?.interruptible(interrupted))
         });
         Ok(Self {
@@ -173,11 +174,11 @@ impl<'a> Solver<'a> {
                 waves,
                 realisation,
                 speed_mm_s: *speed_mm_s,
-                pressure_mpa: pressure / 1e6,
+                pressure_mpa: pressure.pa_to_mpa(),
                 friction_coefficient: solution.friction_coefficient,
                 friction_from_heat: solution.hysteretic_friction,
                 contact_area_fraction: solution.contact_area_fraction,
-                mean_separation_mm: solution.mean_separation * 1e3,
+                mean_separation_mm: solution.mean_separation.m_to_mm(),
                 coarser_friction_coefficient: coarser.map(|half| half.friction_coefficient),
                 coarser_contact_area_fraction: coarser.map(|half| half.contact_area_fraction),
                 residual: solution.residual,

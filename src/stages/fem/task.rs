@@ -13,6 +13,7 @@ use crate::stages::kept::SolveTask;
 use crate::stages::micro::{columns, is_of};
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError, Watch};
+use crate::units::Units;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -50,7 +51,7 @@ pub(super) fn tasks(
             tasks.extend(first.map(|row| Task {
                 surface: surface.clone(),
                 speed_mm_s,
-                first_guess: row.pressure_mpa * 1e6,
+                first_guess: row.pressure_mpa.mpa_to_pa(),
             }));
         }
     }

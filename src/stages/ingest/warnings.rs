@@ -5,6 +5,7 @@ use crate::scans::TextFormat;
 use crate::scans::description::LengthUnit;
 use crate::scans::text_shape::{repeated_inside, unit_name};
 use crate::surface::{ConditioningReport, RawScan};
+use crate::units::Units;
 
 /// Where the description does not fit the files.
 pub(super) fn of_description(
@@ -109,7 +110,7 @@ pub(super) fn stuck(scan: &RawScan) -> Option<String> {
     let least = STUCK_POINTS.max((STUCK_SHARE * heights.len() as f64).ceil() as usize);
     let [first, last] = [longest.start, longest.end.max(1) - 1].map(|i| scan.positions.get(i));
     (longest.len() >= least).then(|| {
-        let [first, last] = [first, last].map(|x| 1e3 * x.copied().unwrap_or(f64::NAN));
+        let [first, last] = [first, last].map(|x| x.copied().unwrap_or(f64::NAN).m_to_mm());
         format!(
             "{} of {} points ({:.0} %), from {first:.3} to {last:.3} mm, have one and the same height",
             longest.len(),
@@ -134,8 +135,8 @@ pub(super) fn smooth(scan: &RawScan) -> Option<String> {
     (length.abs() >= LENGTH_OF_SMOOTH && range > 0.0 && range < SMOOTH).then(|| {
         format!(
             "half of the heights lie within {:.2e} um on {:.1} mm of track",
-            range * 1e6,
-            length.abs() * 1e3
+            range.m_to_um(),
+            length.abs().m_to_mm()
         )
     })
 }

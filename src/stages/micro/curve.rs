@@ -13,6 +13,7 @@ use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::surface::wave;
+use crate::units::Units;
 use serde_json::{Value, json};
 
 /// Revision of the solvers: part of the key of every stored solve.
@@ -80,10 +81,10 @@ impl<'a> MicroCurve<'a> {
         let set_up: SetUp = Box::new(move || {
             let profile = RigidProfile::from_waves(&task.micro, period);
             let options = BlockOptions::of_profile(columns, &profile);
-            let (law, speed) = (Rheology::NeoHookean, task.speed_mm_s / 1e3);
+            let (law, speed) = (Rheology::NeoHookean, task.speed_mm_s.mm_to_m());
             let contact = SteadyContact::new(rubber, law, speed, profile, options)?;
             let contact = match parameters.contact_length_mm {
-                Some(length) => contact.lasting(length / 1e3),
+                Some(length) => contact.lasting(length.mm_to_m()),
                 None => contact,
             };
             Ok(contact.interruptible(interrupted))
@@ -150,7 +151,7 @@ impl<'a> MicroCurve<'a> {
                         Some(SampleRow { pressure_mpa, .. }) => {
                             format!(
                                 "is sampled up to {pressure_mpa:.3} MPa of {:.3}",
-                                largest / 1e6
+                                largest.pa_to_mpa()
                             )
                         }
                         None => "has not one sample".into(),
@@ -194,7 +195,7 @@ impl<'a> MicroCurve<'a> {
         let mut coarser = Self::on(columns, parameters, rubber, task, store, interrupted)?;
         let mut differences = Vec::with_capacity(rows.len());
         for row in rows.iter() {
-            match coarser.row(row.pressure_mpa * 1e6) {
+            match coarser.row(row.pressure_mpa.mpa_to_pa()) {
                 Ok(coarse) => differences.push(
                     (row.friction_finite_deformation - coarse.friction_finite_deformation).abs(),
                 ),
@@ -232,7 +233,7 @@ impl<'a> MicroCurve<'a> {
 
     /// Writes the errors into the rows and returns the pressures in Pa that should be added.
     fn refined(&self, rows: &mut [SampleRow]) -> Vec<f64> {
-        let pressures: Vec<f64> = rows.iter().map(|row| row.pressure_mpa * 1e6).collect();
+        let pressures: Vec<f64> = rows.iter().map(|row| row.pressure_mpa.mpa_to_pa()).collect();
         let corrections: Vec<f64> = rows.iter().map(SampleRow::correction).collect();
         let friction = rows.iter().map(|row| row.friction_half_space).fold(0.0, f64::max);
         for (row, error) in rows.iter_mut().zip(interpolation_errors(&pressures, &corrections)) {
@@ -269,14 +270,14 @@ impl<'a> MicroCurve<'a> {
                 waves,
                 realisation,
                 speed_mm_s,
-                pressure_mpa: pressure / 1e6,
+                pressure_mpa: pressure.pa_to_mpa(),
                 friction_half_space: half_space.friction_coefficient,
                 friction_finite_deformation: finite.friction_coefficient,
                 friction_from_heat: finite.hysteretic_friction,
                 area_half_space: half_space.contact_area_fraction,
                 area_finite_deformation: finite.contact_area_fraction,
-                separation_half_space_mm: half_space.mean_separation * 1e3,
-                separation_finite_deformation_mm: finite.mean_separation * 1e3,
+                separation_half_space_mm: half_space.mean_separation.m_to_mm(),
+                separation_finite_deformation_mm: finite.mean_separation.m_to_mm(),
                 interpolation_error: 0.0,
                 discretisation_error: None,
                 residual: finite.residual,
@@ -301,7 +302,7 @@ impl HalfSpace<'_> {
         let contact = match self.contact.take() {
             Some(contact) => contact,
             None => {
-                let (speed, heights) = (self.task.speed_mm_s / 1e3, self.heights());
+                let (speed, heights) = (self.task.speed_mm_s.mm_to_m(), self.heights());
                 let Self { rubber, period, interrupted, .. } = *self;
                 SlidingContact::new_interruptible(rubber, speed, period, &heights, interrupted)?
             }

@@ -14,6 +14,7 @@ use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError, Watch};
 use crate::surface::Wave;
+use crate::units::Units;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -94,8 +95,7 @@ pub(super) fn tasks(
 /// Whether a value of the half-space is of that surface and speed: not all surfaces that were drawn
 /// are needed.
 pub(crate) fn is_of(row: &CurveRow, surface: &Surface, speed_mm_s: f64) -> bool {
-    (row.waves, row.realisation) == (surface.waves, surface.realisation)
-        && row.speed_mm_s == speed_mm_s
+    row.curve() == surface.at(speed_mm_s)
 }
 
 impl PressedSurface {
@@ -193,11 +193,11 @@ impl Task {
             let PressedSurface { surface, most_pressure_mpa, .. } = pressed;
             let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
-            let speed = self.speed_mm_s / 1e3;
+            let speed = self.speed_mm_s.mm_to_m();
             let law = law.clone();
             let mut contact =
                 SoftContact::new_interruptible(rubber, speed, period, &heights, law, interrupt)?;
-            let solution = contact.solve(most_pressure_mpa * 1e6)?;
+            let solution = contact.solve(most_pressure_mpa.mpa_to_pa())?;
             largest = solution.pressure.into_iter().fold(largest, f64::max);
         }
         Ok(largest)

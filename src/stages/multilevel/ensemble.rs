@@ -10,6 +10,7 @@ use crate::stages::bem::{Bem, CurveRow};
 use crate::stages::fem::{self, FemCurve, FemCurveRow, FemSolveRow};
 use crate::stages::micro::is_of;
 use crate::stages::realise::Surface;
+use crate::units::Units;
 
 /// One approximation at one speed.
 pub(super) struct Ensemble<'a> {
@@ -96,7 +97,7 @@ impl<'a> Ensemble<'a> {
     /// The curve as a task of the finite elements.
     pub fn fem_task(&self, surface: &Surface) -> Option<fem::Task> {
         let curve = self.half_space.get(surface.realisation as usize - 1)?;
-        let first_guess = curve.first()?.pressure_mpa * 1e6;
+        let first_guess = curve.first()?.pressure_mpa.mpa_to_pa();
         Some(fem::Task { surface: surface.clone(), speed_mm_s: self.speed_mm_s, first_guess })
     }
 

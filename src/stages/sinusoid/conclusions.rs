@@ -2,12 +2,14 @@
 
 use super::problem::Model;
 use super::{AgreementRow, PeakRow, PointRow};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The maximum of friction of every curve that has a point.
 pub(super) fn peaks(points: &[PointRow]) -> Vec<PeakRow> {
     let mut peaks: Vec<PeakRow> = curves(points).filter_map(peak).collect();
     let reference: Vec<PeakRow> =
-        peaks.iter().filter(|peak| peak.model == Model::NeoHookean.name()).cloned().collect();
+        peaks.iter().filter(|peak| peak.model == Model::NeoHookean).cloned().collect();
     for peak in &mut peaks {
         let same = reference.iter().find(|other| other.aspect_ratio == peak.aspect_ratio);
         peak.relative_to_neo_hookean = same
@@ -40,7 +42,7 @@ fn peak(curve: &[PointRow]) -> Option<PeakRow> {
     Some(PeakRow {
         aspect_ratio: point.aspect_ratio,
         rms_slope: point.rms_slope,
-        model: point.model.clone(),
+        model: point.model,
         friction_coefficient: largest,
         friction_mesh_error: point.friction_mesh_error,
         speed_mm_s,
@@ -65,7 +67,7 @@ fn vertex([left, middle, right]: [(f64, f64); 3]) -> (f64, f64) {
 
 /// The other models against the neo-Hookean one, for each quantity and level.
 pub(super) fn agreement(points: &[PointRow], levels: &[f64]) -> Vec<AgreementRow> {
-    let reference = Model::NeoHookean.name();
+    let reference = Model::NeoHookean;
     let mut rows = Vec::new();
     for curve in curves(points).filter(|curve| curve[0].model != reference) {
         let same = |other: &&[PointRow]| {
@@ -81,11 +83,23 @@ pub(super) fn agreement(points: &[PointRow], levels: &[f64]) -> Vec<AgreementRow
 }
 
 /// What is compared.
-#[derive(Clone, Copy, PartialEq)]
-enum Quantity {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Quantity {
+    /// Friction, relative to that of the neo-Hookean model at the same speed.
+    #[serde(rename = "friction")]
     Friction,
+    /// Friction, relative to the largest of the neo-Hookean model.
+    #[serde(rename = "friction of peak")]
     FrictionOfPeak,
+    /// Contact area, relative to that of the neo-Hookean model at the same speed.
+    #[serde(rename = "area")]
     Area,
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(self.name())
+    }
 }
 
 /// Relative difference at one speed and what the meshes leave open of it.
@@ -105,7 +119,8 @@ enum Verdict {
 impl Quantity {
     const ALL: [Self; 3] = [Self::Friction, Self::FrictionOfPeak, Self::Area];
 
-    fn name(self) -> &'static str {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Friction => "friction",
             Self::FrictionOfPeak => "friction of peak",
@@ -166,8 +181,8 @@ fn summary(
     let mut row = AgreementRow {
         aspect_ratio: curve[0].aspect_ratio,
         rms_slope: curve[0].rms_slope,
-        model: curve[0].model.clone(),
-        quantity: quantity.name().into(),
+        model: curve[0].model,
+        quantity,
         level,
         compared: 0,
         missing: 0,
@@ -214,7 +229,7 @@ mod tests {
         PointRow {
             aspect_ratio: 0.1,
             rms_slope: 0.44,
-            model: model.name().into(),
+            model,
             speed_mm_s: speed,
             deborah_number: speed / 2.0,
             pressure_mpa: 2.0,

@@ -1,10 +1,12 @@
 //! Solves on two meshes to values with their mesh error.
 
 use super::problem::{Model, Outcome, Problem, Solved};
+use super::rows::Limit;
 use super::{AsymptoteRow, FieldRow, PointRow, Sinusoid, TwoMeshes};
 use crate::reference::{SineCrest, Westergaard};
 use crate::rubber::Rubber;
 use crate::surface::SineScale;
+use crate::units::Units;
 use std::f64::consts::TAU;
 
 /// Order of the methods that the extrapolation assumes: the half-space shows 2.1 and 2.2, bilinear
@@ -122,7 +124,7 @@ fn row(
     PointRow {
         aspect_ratio: problem.aspect_ratio,
         rms_slope: rms_slope(problem.aspect_ratio),
-        model: problem.model.name().into(),
+        model: problem.model,
         speed_mm_s: problem.speed_mm_s,
         deborah_number: scale.deborah_number(problem.speed_mm_s),
         pressure_mpa,
@@ -177,7 +179,7 @@ pub(super) fn fields(cases: &[Case], outcomes: &[TwoMeshes], scale: &Scale) -> V
         rows.extend(nodes.map(|node| FieldRow {
             aspect_ratio: problem.aspect_ratio,
             rms_slope: rms_slope(problem.aspect_ratio),
-            model: problem.model.name().into(),
+            model: problem.model,
             speed_mm_s: problem.speed_mm_s,
             deborah_number: scale.deborah_number(problem.speed_mm_s),
             x_mm: node.x_mm,
@@ -192,23 +194,24 @@ pub(super) fn fields(cases: &[Case], outcomes: &[TwoMeshes], scale: &Scale) -> V
 /// The elastic limits of every aspect ratio.
 pub(super) fn asymptotes(parameters: &Sinusoid, rubber: &Rubber) -> Vec<AsymptoteRow> {
     let plane_strain = 1.0 - rubber.poisson_ratio.powi(2);
-    let limits = [("slow", rubber.equilibrium_modulus), ("fast", rubber.glassy_modulus())];
-    let pressure = parameters.pressure_mpa * 1e6;
-    let row = |aspect_ratio: f64, limit: &str, modulus: f64| {
+    let limits =
+        [(Limit::Slow, rubber.equilibrium_modulus), (Limit::Fast, rubber.glassy_modulus())];
+    let pressure = parameters.pressure_mpa.mpa_to_pa();
+    let row = |aspect_ratio: f64, limit: Limit, modulus: f64| {
         let reduced_modulus = modulus / plane_strain;
-        let wavelength = parameters.wavelength_mm / 1e3;
+        let wavelength = parameters.wavelength_mm.mm_to_m();
         let wave = SineScale { wavelength, amplitude: aspect_ratio * wavelength };
         let (hertz, sine) =
             (SineCrest { reduced_modulus, wave }, Westergaard { reduced_modulus, wave });
         AsymptoteRow {
             aspect_ratio,
             rms_slope: rms_slope(aspect_ratio),
-            limit: limit.into(),
+            limit,
             pressure_mpa: parameters.pressure_mpa,
-            reduced_modulus_mpa: reduced_modulus / 1e6,
+            reduced_modulus_mpa: reduced_modulus.pa_to_mpa(),
             hertz_area_fraction: hertz.contact_area_fraction(pressure),
-            hertz_maximum_pressure_mpa: hertz.maximum_pressure(pressure) / 1e6,
-            full_contact_pressure_mpa: sine.full_contact_pressure() / 1e6,
+            hertz_maximum_pressure_mpa: hertz.maximum_pressure(pressure).pa_to_mpa(),
+            full_contact_pressure_mpa: sine.full_contact_pressure().pa_to_mpa(),
             westergaard_area_fraction: sine.contact_area_fraction(pressure),
         }
     };
@@ -259,8 +262,8 @@ mod tests {
         let scale = Scale::of(&Rubber::table_2_1(), 1.0);
         let row = row(&case.finer, 2.0, &missing(Some(0.5)), &missing(None), &scale);
         assert_eq!(
-            (row.model.as_str(), row.friction_coefficient, row.residual),
-            ("linear", None, None)
+            (row.model, row.friction_coefficient, row.residual),
+            (Model::Linear, None, None)
         );
         assert_eq!((row.path_ended_at_mpa, row.coarse_path_ended_at_mpa), (Some(0.5), None));
         assert_eq!(row.why_missing.as_deref(), Some("the path ended"));

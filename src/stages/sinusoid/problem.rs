@@ -11,6 +11,8 @@ use crate::rubber::{Rheology, Rubber};
 use crate::stages::SolveError;
 use crate::stages::kept::{self, Kept};
 use crate::surface::{Wave, wave};
+use crate::units::Units;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -19,7 +21,7 @@ use serde_json::json;
 const SOLVER_REVISION: u32 = 7;
 
 /// A contact model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// Linear viscoelastic half-space (VHS).
@@ -41,6 +43,12 @@ impl Model {
             Self::Linear => "linear",
             Self::NeoHookean => "neo-hookean",
         }
+    }
+}
+
+impl std::fmt::Display for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(self.name())
     }
 }
 
@@ -105,7 +113,7 @@ impl Outcome {
 impl std::fmt::Display for Problem {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let Self { aspect_ratio, speed_mm_s, columns, .. } = self;
-        let model = self.model.name();
+        let model = self.model;
         write!(f, "{model}, D/L = {aspect_ratio}, {speed_mm_s} mm/s, {columns} columns")
     }
 }
@@ -129,7 +137,7 @@ impl Problem {
     }
 
     fn wave(&self) -> Wave {
-        let wavelength = self.wavelength_mm / 1e3;
+        let wavelength = self.wavelength_mm.mm_to_m();
         Wave { wavelength, amplitude: self.aspect_ratio * wavelength, phase: 0.0 }
     }
 
@@ -140,11 +148,11 @@ impl Problem {
     ) -> Result<Vec<Outcome>, SolveError> {
         let wave = self.wave();
         let heights = wave::sample(&[wave], wave.wavelength, self.columns);
-        let speed = self.speed_mm_s / 1e3;
+        let speed = self.speed_mm_s.mm_to_m();
         let mut contact =
             SlidingContact::new_interruptible(rubber, speed, wave.wavelength, &heights, interrupt)?;
         // Every pressure is solved from scratch, so one that fails is no end.
-        let outcome = |pressure: &f64| match contact.solve(pressure * 1e6) {
+        let outcome = |pressure: &f64| match contact.solve(pressure.mpa_to_pa()) {
             Ok(solution) => Ok(Outcome::Solved(self.read_half_space(&solution, &heights))),
             Err(error @ ContactError::NotConverged { .. }) => {
                 Ok(Outcome::NoSolution { why: error.to_string(), path_ended_at_mpa: None })
@@ -158,16 +166,16 @@ impl Problem {
         let spacing_mm = self.wavelength_mm / self.columns as f64;
         let point = |i: usize| FieldPoint {
             x_mm: i as f64 * spacing_mm,
-            profile_height_mm: heights[i] * 1e3,
-            pressure_mpa: solution.pressure[i] / 1e6,
-            separation_mm: solution.separation[i] * 1e3,
+            profile_height_mm: heights[i].m_to_mm(),
+            pressure_mpa: solution.pressure[i].pa_to_mpa(),
+            separation_mm: solution.separation[i].m_to_mm(),
         };
         let kept = if self.keeps_fields { self.columns } else { 0 };
         Solved {
             friction_coefficient: solution.friction_coefficient,
             hysteretic_friction: solution.hysteretic_friction,
             contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
+            mean_separation_mm: solution.mean_separation.m_to_mm(),
             residual: solution.residual,
             nodes: (0..kept).map(point).collect(),
         }
@@ -180,7 +188,7 @@ impl Problem {
         interrupt: &Interrupt,
     ) -> Result<Vec<Outcome>, SolveError> {
         let wave = self.wave();
-        let speed = self.speed_mm_s / 1e3;
+        let speed = self.speed_mm_s.mm_to_m();
         let set_up = || {
             let profile = RigidProfile::from_waves(&[wave], wave.wavelength);
             let options = BlockOptions::of_profile(self.columns, &profile);
@@ -191,7 +199,7 @@ impl Problem {
         let mut last: Option<SteadyContact> = None;
         let solve = |pressure: &f64| {
             if let Some(mut contact) = last.take() {
-                match contact.solve(pressure * 1e6) {
+                match contact.solve(pressure.mpa_to_pa()) {
                     Ok(solution) => {
                         last = Some(contact);
                         return Ok(Outcome::Solved(self.read_block(&solution)));
@@ -201,7 +209,7 @@ impl Problem {
                 }
             }
             let mut contact = set_up()?;
-            match contact.solve(pressure * 1e6) {
+            match contact.solve(pressure.mpa_to_pa()) {
                 Ok(solution) => {
                     last = Some(contact);
                     Ok(Outcome::Solved(self.read_block(&solution)))
@@ -219,10 +227,10 @@ impl Problem {
             .iter()
             .map(|node| FieldPoint {
                 // Nodes are carried along by the rubber, out of the period they began in.
-                x_mm: (node.x * 1e3).rem_euclid(self.wavelength_mm),
-                profile_height_mm: node.profile_height * 1e3,
-                pressure_mpa: node.pressure / 1e6,
-                separation_mm: node.separation * 1e3,
+                x_mm: node.x.m_to_mm().rem_euclid(self.wavelength_mm),
+                profile_height_mm: node.profile_height.m_to_mm(),
+                pressure_mpa: node.pressure.pa_to_mpa(),
+                separation_mm: node.separation.m_to_mm(),
             })
             .collect();
         nodes.sort_by(|a, b| a.x_mm.total_cmp(&b.x_mm));
@@ -230,7 +238,7 @@ impl Problem {
             friction_coefficient: solution.friction_coefficient,
             hysteretic_friction: solution.hysteretic_friction,
             contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
+            mean_separation_mm: solution.mean_separation.m_to_mm(),
             residual: solution.residual,
             nodes,
         }
@@ -239,7 +247,9 @@ impl Problem {
 
 fn no_solution(error: &FemError) -> Outcome {
     let path_ended_at_mpa = match error {
-        FemError::PathEnded { reached: PathEnd::At { pressure, .. }, .. } => Some(pressure / 1e6),
+        FemError::PathEnded { reached: PathEnd::At { pressure, .. }, .. } => {
+            Some(pressure.pa_to_mpa())
+        }
         _ => None,
     };
     Outcome::NoSolution { why: error.to_string(), path_ended_at_mpa }

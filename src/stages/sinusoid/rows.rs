@@ -1,5 +1,7 @@
 //! The tables of the stage.
 
+use super::conclusions::Quantity;
+use super::problem::Model;
 use crate::artifact::Row;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,7 +18,7 @@ pub struct PointRow {
     pub rms_slope: f64,
     /// Model: `half-space` (linear viscoelastic half-space), `linear` (stress linear in the
     /// logarithmic strain), `neo-hookean` (finite viscoelasticity).
-    pub model: String,
+    pub model: Model,
     /// Sliding speed v.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
@@ -78,6 +80,25 @@ impl Row for PointRow {
     const VERSION: u32 = 1;
 }
 
+/// A limit of the speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Limit {
+    /// Slow sliding: the relaxed modulus.
+    Slow,
+    /// Fast sliding: the glassy modulus.
+    Fast,
+}
+
+impl std::fmt::Display for Limit {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Slow => "slow",
+            Self::Fast => "fast",
+        })
+    }
+}
+
 /// The elastic limits of slow sliding (relaxed modulus) and fast sliding (glassy modulus).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AsymptoteRow {
@@ -88,7 +109,7 @@ pub struct AsymptoteRow {
     #[schemars(extend("unit" = "1"))]
     pub rms_slope: f64,
     /// Limit: `slow` or `fast`.
-    pub limit: String,
+    pub limit: Limit,
     /// Mean pressure.
     #[schemars(extend("unit" = "MPa"))]
     pub pressure_mpa: f64,
@@ -124,7 +145,7 @@ pub struct FieldRow {
     #[schemars(extend("unit" = "1"))]
     pub rms_slope: f64,
     /// Model, as in the points.
-    pub model: String,
+    pub model: Model,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
@@ -160,7 +181,7 @@ pub struct PeakRow {
     #[schemars(extend("unit" = "1"))]
     pub rms_slope: f64,
     /// Model, as in the points.
-    pub model: String,
+    pub model: Model,
     /// Largest friction coefficient: of the parabola over log v through the highest point and its
     /// neighbours, or of the highest point where it is not bracketed.
     #[schemars(extend("unit" = "1"))]
@@ -202,10 +223,10 @@ pub struct AgreementRow {
     #[schemars(extend("unit" = "1"))]
     pub rms_slope: f64,
     /// Model that is compared, as in the points.
-    pub model: String,
+    pub model: Model,
     /// What is compared: `friction` and `area` as differences over the value of the neo-Hookean
     /// model at the same speed, `friction of peak` as difference over its largest friction.
-    pub quantity: String,
+    pub quantity: Quantity,
     /// Relative difference that counts as agreement.
     #[schemars(extend("unit" = "1"))]
     pub level: f64,

@@ -1,6 +1,6 @@
 //! Whether the averages have the accuracy that the recipe asks for.
 
-use super::{BEM, FrictionRow};
+use super::{FrictionRow, Model};
 use crate::numerics::statistics::MeanEstimate;
 
 /// Says so where averages of the half-space miss the wanted relative accuracy, by how much and what
@@ -8,7 +8,7 @@ use crate::numerics::statistics::MeanEstimate;
 /// few: the recipe allows no more.
 pub(super) fn missed(tolerance: f64, rows: &[FrictionRow]) -> Option<String> {
     let relative = |row: &FrictionRow| row.error_estimate.map(|error| error / row.mean.abs());
-    let half_space: Vec<&FrictionRow> = rows.iter().filter(|row| row.model == BEM).collect();
+    let half_space: Vec<&FrictionRow> = rows.iter().filter(|row| row.model == Model::Bem).collect();
     let known = half_space.iter().filter_map(|row| Some((row, relative(row)?)));
     let (worst, most) = known.clone().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let missing = known.filter(|(_, error)| *error > tolerance).count();
@@ -43,7 +43,7 @@ mod tests {
     #[test]
     fn too_few_realisations_are_named_with_the_number_that_would_do() {
         let curves = (1..=4).map(|k| curve(8, k, 0.05, 1.0 + 0.01 * f64::from(k))).collect();
-        let rows = average(BEM, curves);
+        let rows = average(Model::Bem, curves);
         assert_eq!(missed(0.5, &rows), None);
         let warning = missed(0.01, &rows).unwrap();
         // Mean 1.025, 95 % of four: 3.182 * 0.01291 / 2 = 0.02054, 2.00 %; grid and interpolation

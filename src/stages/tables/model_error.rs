@@ -1,6 +1,6 @@
 //! How far the hybrid is from what it approximates.
 
-use super::{Corrected, FEM, FrictionRow, HYBRID};
+use super::{Corrected, FrictionRow, Model};
 use crate::stages::approximate::ScaleRow;
 use crate::stages::hybrid::Hybrid;
 
@@ -21,8 +21,9 @@ const BY_OTHER_RULES: Measured =
 /// Gives every average of the hybrid its model error, and the sum of its errors with it: the difference to all
 /// waves at finite deformation of the same realisations, or the share measured elsewhere.
 pub(super) fn add(rows: &mut [FrictionRow], fitted: &[ScaleRow], corrected: Corrected) {
-    let known: Vec<FrictionRow> = rows.iter().filter(|row| row.model == FEM).cloned().collect();
-    for row in rows.iter_mut().filter(|row| row.model == HYBRID) {
+    let known: Vec<FrictionRow> =
+        rows.iter().filter(|row| row.model == Model::Fem).cloned().collect();
+    for row in rows.iter_mut().filter(|row| row.model == Model::Hybrid) {
         let same = known.iter().find(|fem| {
             fem.waves == row.waves
                 && fem.speed_mm_s == row.speed_mm_s
@@ -49,8 +50,8 @@ fn measured_elsewhere(waves: u32, fitted: &[ScaleRow], corrected: Corrected) -> 
 
 #[cfg(test)]
 mod tests {
+    use super::super::average;
     use super::super::tests::curve;
-    use super::super::{BEM, average};
     use super::*;
     use crate::multiscale::correction::MeanRule;
 
@@ -60,9 +61,9 @@ mod tests {
             let of = |area: &f64| [curve(8, 1, *area, friction), curve(8, 2, *area, friction)];
             areas.iter().flat_map(of).collect::<Vec<_>>()
         };
-        let mut rows = average(HYBRID, values(1.0, &[0.05, 0.1]));
-        rows.extend(average(FEM, values(0.8, &[0.05])));
-        rows.extend(average(BEM, values(1.1, &[0.05])));
+        let mut rows = average(Model::Hybrid, values(1.0, &[0.05, 0.1]));
+        rows.extend(average(Model::Fem, values(0.8, &[0.05])));
+        rows.extend(average(Model::Bem, values(1.1, &[0.05])));
         let before = rows.clone();
         let scale = |wavelength_mm, rms_slope| ScaleRow {
             waves: 8,

@@ -1,6 +1,7 @@
 //! How far the models of a run are apart.
 
-use super::{BEM, FEM, FrictionRow, HYBRID, KLUEPPEL_HEINRICH, MULTILEVEL, PERSSON};
+use super::FrictionRow;
+use super::Model::{self, Bem, Fem, Hybrid, KlueppelHeinrich, Multilevel, Persson};
 use crate::artifact::{Row, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,9 +14,9 @@ pub const MODELS: Table<ModelRow> = Table::new("tables", "models.arrow");
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelRow {
     /// Contact model.
-    pub model: String,
+    pub model: Model,
     /// The model that it is measured by.
-    pub reference: String,
+    pub reference: Model,
     /// Number of waves of the approximation.
     pub waves: u32,
     /// Sliding speed.
@@ -49,16 +50,16 @@ impl Row for ModelRow {
 /// Every pair of models of a run, the better one as the reference; the theories by what is solved.
 pub(super) fn comparisons(rows: &[FrictionRow]) -> Vec<ModelRow> {
     let solved = [
-        (BEM, FEM),
-        (HYBRID, FEM),
-        (MULTILEVEL, FEM),
-        (BEM, HYBRID),
-        (BEM, MULTILEVEL),
-        (HYBRID, MULTILEVEL),
+        (Bem, Fem),
+        (Hybrid, Fem),
+        (Multilevel, Fem),
+        (Bem, Hybrid),
+        (Bem, Multilevel),
+        (Hybrid, Multilevel),
     ];
-    let theories = [PERSSON, KLUEPPEL_HEINRICH]
+    let theories = [Persson, KlueppelHeinrich]
         .into_iter()
-        .flat_map(|theory| [BEM, HYBRID, FEM, MULTILEVEL].map(|reference| (theory, reference)));
+        .flat_map(|theory| [Bem, Hybrid, Fem, Multilevel].map(|reference| (theory, reference)));
     solved
         .into_iter()
         .chain(theories)
@@ -67,9 +68,9 @@ pub(super) fn comparisons(rows: &[FrictionRow]) -> Vec<ModelRow> {
 }
 
 /// How far a model is from another, for each number of waves and speed.
-fn apart(rows: &[FrictionRow], model: &str, reference: &str) -> Vec<ModelRow> {
+fn apart(rows: &[FrictionRow], model: Model, reference: Model) -> Vec<ModelRow> {
     // Without a realisation at finite deformation `multilevel` is the half-space over again.
-    let of = |name: &str| {
+    let of = |name: Model| {
         let own = |row: &&FrictionRow| row.model == name && !row.realisations.is_empty();
         rows.iter().filter(own).collect::<Vec<_>>()
     };
@@ -94,8 +95,8 @@ fn apart(rows: &[FrictionRow], model: &str, reference: &str) -> Vec<ModelRow> {
                 a.realisations.iter().zip(&b.realisations).map(|(a, b)| relative(*a, *b).abs())
             });
             Some(ModelRow {
-                model: model.into(),
-                reference: reference.into(),
+                model,
+                reference,
                 waves: first.waves,
                 speed_mm_s: first.speed_mm_s,
                 from_area_fraction: first.contact_area_fraction,
@@ -119,8 +120,8 @@ mod tests {
     fn models_are_compared_where_both_have_a_value() {
         let bem = vec![curve(8, 1, 0.05, 1.1), curve(8, 2, 0.05, 0.9), curve(8, 1, 0.1, 2.0)];
         let fem = vec![curve(8, 1, 0.05, 1.0), curve(8, 2, 0.05, 1.0), curve(9, 1, 0.1, 2.0)];
-        let rows = [average(BEM, bem), average(FEM, fem)].concat();
-        let apart = apart(&rows, BEM, FEM);
+        let rows = [average(Bem, bem), average(Fem, fem)].concat();
+        let apart = apart(&rows, Bem, Fem);
         assert_eq!((apart.len(), apart[0].areas, apart[0].to_area_fraction), (1, 1, 0.05));
         approx::assert_relative_eq!(apart[0].relative_error, 0.1, max_relative = 1e-12);
         assert!(apart[0].bias.abs() < 1e-15 && apart[0].relative_error_of_averages < 1e-15);

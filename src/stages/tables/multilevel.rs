@@ -1,6 +1,6 @@
 //! The averages of the stage multilevel as rows of the friction tables.
 
-use super::{FrictionRow, MULTILEVEL};
+use super::{FrictionRow, Model};
 use crate::artifact::{ArtifactError, RunView};
 use crate::numerics::statistics::MeanEstimate;
 use crate::stages::multilevel::{AVERAGES, AverageRow, PAIRS, PairRow};
@@ -35,7 +35,7 @@ fn realisations(average: &AverageRow, pairs: &[PairRow]) -> Vec<f64> {
 fn row(average: &AverageRow, realisations: &[f64]) -> FrictionRow {
     let deviation = MeanEstimate::of(realisations).standard_deviation;
     FrictionRow {
-        model: MULTILEVEL.into(),
+        model: Model::Multilevel,
         waves: average.waves,
         speed_mm_s: average.speed_mm_s,
         contact_area_fraction: average.contact_area_fraction,

@@ -7,6 +7,7 @@ use super::{FrictionRow, Model, Tables};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, Table};
 use crate::files;
 use crate::stages::{Context, StageError};
+use crate::units::Units;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -61,7 +62,7 @@ pub struct ComparisonRow {
     /// Name of the published table.
     pub published_table: String,
     /// Contact model of both.
-    pub model: String,
+    pub model: Model,
     /// Number of waves of the approximation.
     pub waves: u32,
     /// Sliding speed.
@@ -211,14 +212,14 @@ fn compare(
     let mut compared = Vec::new();
     for line in lines::<Line>(&published.file)? {
         let computed = rows.iter().find(|row| {
-            row.model == published.model.name()
+            row.model == published.model
                 && is_of(row.waves, published.waves, fitted)
                 && row.speed_mm_s == published.speed_mm_s
                 && row.contact_area_fraction == line.area_fraction
         });
         compared.extend(computed.map(|row| ComparisonRow {
             published_table: published.name.clone(),
-            model: row.model.clone(),
+            model: row.model,
             waves: published.waves,
             speed_mm_s: row.speed_mm_s,
             contact_area_fraction: row.contact_area_fraction,
@@ -259,7 +260,7 @@ fn compare_corrections(
     let microscale = between_samples(&own);
     let mut compared = Vec::new();
     for line in lines::<Line>(&published.file)? {
-        let pressure = line.pressure_mpa * 1e6;
+        let pressure = line.pressure_mpa.mpa_to_pa();
         let Some((half_space, finite)) = microscale.friction(pressure) else { continue };
         let mesh = microscale.correction(&[pressure]).ok().flatten();
         compared.push(CorrectionRow {

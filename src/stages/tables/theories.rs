@@ -1,6 +1,6 @@
 //! What older theories predict at the areas of the half-space.
 
-use super::Value;
+use super::Model;
 use crate::artifact::{Row, RunView, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
@@ -9,6 +9,7 @@ use crate::stages::bem::CurveRow;
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::surface::{SineScale, wave};
 use crate::theory::{KlueppelHeinrich, Persson};
+use crate::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -26,11 +27,11 @@ pub enum Theory {
 }
 
 impl Theory {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
+    /// Its name among the models of the tables.
+    pub fn model(self) -> Model {
         match self {
-            Self::Persson => super::PERSSON,
-            Self::KlueppelHeinrich => super::KLUEPPEL_HEINRICH,
+            Self::Persson => Model::Persson,
+            Self::KlueppelHeinrich => Model::KlueppelHeinrich,
         }
     }
 }
@@ -85,7 +86,7 @@ impl TheoryConstants {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TheoryRow {
     /// Theory: `persson` or `klueppel-heinrich`.
-    pub model: String,
+    pub model: Model,
     /// Number of waves of the approximation.
     pub waves: u32,
     /// Number of the realisation, from 1.
@@ -109,22 +110,6 @@ impl Row for TheoryRow {
     const VERSION: u32 = 1;
 }
 
-impl From<&TheoryRow> for Value {
-    fn from(row: &TheoryRow) -> Self {
-        Self {
-            waves: row.waves,
-            realisation: row.realisation,
-            speed_mm_s: row.speed_mm_s,
-            contact_area_fraction: row.contact_area_fraction,
-            pressure_mpa: row.pressure_mpa,
-            friction_coefficient: row.friction_coefficient,
-            interpolation_error: 0.0,
-            discretisation_error: None,
-            left_out_error: 0.0,
-        }
-    }
-}
-
 /// The predictions of the theories for the surfaces, speeds and areas of the half-space, in its order.
 ///
 /// # Errors
@@ -137,27 +122,23 @@ pub(super) fn predictions(
     run: &RunView,
 ) -> Result<Vec<TheoryRow>, StageError> {
     let surfaces = read_surfaces(run)?;
-    let same_curve = |a: &CurveRow, b: &CurveRow| {
-        (a.waves, a.realisation) == (b.waves, b.realisation) && a.speed_mm_s == b.speed_mm_s
-    };
     let mut rows = Vec::new();
     for &theory in theories {
-        for curve in half_space.chunk_by(same_curve) {
+        for curve in half_space.chunk_by(CurveRow::same_curve) {
             let first = &curve[0];
-            let of_curve = |surface: &&Surface| {
-                (surface.waves, surface.realisation) == (first.waves, first.realisation)
-            };
+            let of_curve = |surface: &&Surface| surface.at(first.speed_mm_s) == first.curve();
             let Some(surface) = surfaces.iter().find(of_curve) else { continue };
-            let predict = prediction(theory, constants, rubber, surface, first.speed_mm_s / 1e3);
+            let predict =
+                prediction(theory, constants, rubber, surface, first.speed_mm_s.mm_to_m());
             rows.extend(curve.iter().map(|row| {
                 let (pressure, friction_coefficient) = predict(row.contact_area_fraction);
                 TheoryRow {
-                    model: theory.name().into(),
+                    model: theory.model(),
                     waves: row.waves,
                     realisation: row.realisation,
                     speed_mm_s: row.speed_mm_s,
                     contact_area_fraction: row.contact_area_fraction,
-                    pressure_mpa: pressure / 1e6,
+                    pressure_mpa: pressure.pa_to_mpa(),
                     friction_coefficient,
                 }
             }));
