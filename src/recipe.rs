@@ -114,24 +114,8 @@ impl Recipe {
             }
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        for scans in recipe.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans) {
-            *scans = folder.join(&*scans);
-        }
-        let rubbers = [
-            recipe.bem.as_mut().map(|bem| &mut bem.rubber),
-            recipe.sinusoid.as_mut().map(|sinusoid| &mut sinusoid.rubber),
-        ];
-        for rubber in rubbers.into_iter().flatten().filter(|path| **path != Path::new("")) {
-            *rubber = folder.join(&*rubber);
-        }
-        if let Some(sweep) = &mut recipe.sweep {
-            sweep.resolve(folder);
-        }
-        for published in &mut recipe.tables.published {
-            published.file = folder.join(&published.file);
-        }
-        for published in &mut recipe.tables.published_corrections {
-            published.file = folder.join(&published.file);
+        for path in recipe.paths_mut() {
+            *path = folder.join(&*path);
         }
         Ok(recipe)
     }
@@ -202,21 +186,26 @@ impl Recipe {
     /// # Errors
     /// The operating system's, if the working folder is not known.
     pub fn absolute(mut self) -> std::io::Result<Self> {
-        let mut paths: Vec<&mut PathBuf> = Vec::new();
-        paths.extend(self.ingest.iter_mut().flat_map(|ingest| &mut ingest.scans));
-        paths.extend(self.bem.iter_mut().map(|bem| &mut bem.rubber));
-        paths.extend(self.sinusoid.iter_mut().map(|sinusoid| &mut sinusoid.rubber));
-        paths.extend(self.tables.published.iter_mut().map(|published| &mut published.file));
-        let corrections = self.tables.published_corrections.iter_mut();
-        paths.extend(corrections.map(|published| &mut published.file));
-        if let Some(sweep) = &mut self.sweep {
-            paths.extend(&mut sweep.rubbers);
-            paths.extend(sweep.specimens.iter_mut().flat_map(|specimen| &mut specimen.scans));
-        }
-        for path in paths.into_iter().filter(|path| **path != Path::new("")) {
+        for path in self.paths_mut() {
             *path = std::path::absolute(&*path)?;
         }
         Ok(self)
+    }
+
+    /// Every file that the recipe names.
+    fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        let Self { ingest, bem, sinusoid, tables, sweep, .. } = self;
+        let corrections = tables.published_corrections.iter_mut().map(|table| &mut table.file);
+        ingest
+            .iter_mut()
+            .flat_map(|ingest| &mut ingest.scans)
+            .chain(bem.iter_mut().map(|bem| &mut bem.rubber))
+            .chain(sinusoid.iter_mut().map(|sinusoid| &mut sinusoid.rubber))
+            .chain(tables.published.iter_mut().map(|table| &mut table.file))
+            .chain(corrections)
+            .chain(sweep.iter_mut().flat_map(Sweep::paths_mut))
+            // A rubber may be left to the sweep.
+            .filter(|path| !path.as_os_str().is_empty())
     }
 
     /// What the recipe asks for.

@@ -33,6 +33,7 @@ mod store;
 mod table;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo, Storage};
 pub use arrays::{arrays_info, read_arrays, write_arrays};
@@ -49,8 +50,9 @@ pub use schema::{check_or_write, table_schema};
 pub(crate) use solves::write_by_rename;
 pub use solves::{PACK_EXTENSION, PACK_SCHEMA, PackInfo, read_pack_info};
 pub use solves::{SOLVE_SCHEMA, SolveStore, Solves, StoredSolve, read_stored_solve};
-pub use store::{Pending, RunFolder, RunView, SOLVES_FOLDER};
+pub use store::{Pending, RunFolder, SOLVES_FOLDER};
 pub use table::{Metadata, TableInfo, read_table, table_info, write_table};
+pub use view::RunView;
 
 /// Version of the tool that writes an artifact; recorded in every file and no part of any digest.
 pub const TOOL_VERSION: &str = env!("CARGO_PKG_VERSION");

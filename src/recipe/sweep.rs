@@ -62,12 +62,10 @@ pub struct Case {
 }
 
 impl Sweep {
-    /// Makes the paths relative to the working folder.
-    pub(super) fn resolve(&mut self, folder: &Path) {
+    /// Every file that the section names.
+    pub(super) fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let scans = self.specimens.iter_mut().flat_map(|specimen| &mut specimen.scans);
-        for path in scans.chain(&mut self.rubbers) {
-            *path = folder.join(&*path);
-        }
+        scans.chain(&mut self.rubbers)
     }
 
     fn check(&self) -> Result<(), InvalidRecipe> {

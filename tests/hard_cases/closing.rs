@@ -1,4 +1,4 @@
-//! The last gap before full contact, and what lies just past it.
+//! Near full contact, and what lies just past it.
 
 use crate::case::{Case, grid_condition};
 use crate::lemke::DenseContact;
@@ -21,7 +21,7 @@ fn the_last_1e_6_of_an_elastic_sine() {
         let mut case = Case::new(
             "p = (1 - 1e-6) p*, elastic sine",
             format!("{points} points"),
-            "gap of Westergaard",
+            "non-contact width of Westergaard",
         );
         let profile = superposed(&[0.0], points);
         let mut contact = contact(&rubber, 0.01, &profile);

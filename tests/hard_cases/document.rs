@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Cells of a row: case, size, condition, iterations, residual, second route, difference, verdict.
+/// Cells of a row: case, size, condition, iterations, residual, independent solution, difference, verdict.
 pub type Row = [String; 8];
 
 /// Rows by section, case and size.
@@ -12,38 +12,38 @@ type Table = BTreeMap<(usize, String, String), Row>;
 
 /// Files of cases and the titles of their sections.
 const SECTIONS: [(&str, &str); 9] = [
-    ("small_contacts", "Contacts of few points, single spikes"),
-    ("closing", "The last gap before full contact"),
-    ("flat_parts", "Flat parts, plateaus, equal peaks"),
-    ("rubbers", "Rubbers and speeds at the ends of the spectrum"),
-    ("scales", "Amplitudes, pressures and lengths far from one"),
-    ("grids", "Odd, prime, fine and translated grids"),
+    ("small_contacts", "Small contacts and single spikes"),
+    ("closing", "Near full contact"),
+    ("flat_parts", "Flat regions, plateaus, equal peaks"),
+    ("rubbers", "Relaxed and glassy limits"),
+    ("scales", "Extreme scales"),
+    ("grids", "Grid sizes and translations"),
     ("incompressible", "Incompressible rubber on the half-space"),
-    ("finite_deformation", "Nearly incompressible and steep: finite elements"),
-    ("wave_fits", "Fits of waves that the scan does not determine"),
+    ("finite_deformation", "Finite elements: nearly incompressible rubber, steep profiles"),
+    ("wave_fits", "Ill-posed wave fits"),
 ];
 
 const HEAD: &str = "\
 # Hard cases
-What breaks contact codes and fits. Each case is a test with its own data (`tests/hard_cases`) that is solved to the full
-residual and compared with a second route, or refused with a reason. The second route shares nothing with the first: an exact
-solution, Lemke's complementary pivoting on the dense matrix, a scaled or translated copy of the same problem, or another
-expression of the same number. Nothing is in between: the tests fail if a residual is above its tolerance (1e-10 of the half-space, 1e-8 of finite elements, gradient 1e-11 of the fits)
-or if the routes differ by more than a bound whose reason stands in the test.
+Contact problems and fits on which solvers often fail. Each case is a test with its own data (`tests/hard_cases`) that is solved
+to the full residual and compared with an independent solution, or refused with a reason. The independent solution shares no
+code with the first: it is exact, Lemke's complementary pivoting on the dense matrix, a scaled or translated copy of the same
+problem, or another expression of the same number. The tests fail if a residual is above its tolerance (1e-10 of the half-space,
+1e-8 of finite elements, gradient 1e-11 of the fits) or if the solutions differ by more than a bound justified in the test.
 
-Figures are the worst over the solves of a case. The condition number is that of the dense matrix on the contact set where
-Lemke's method is the second route; of the operator of the whole grid (a closed form, it is normal) elsewhere on the
-half-space; the ratio of bulk to shear modulus for finite elements; of the Jacobian for fits. Iterations are
-those of the active set on the finest grid, Newton steps, or steps of the minimisation. Differences are relative, but
-for those of pressures (by the largest), separations (by the height of the profile) and frictions that may vanish (absolute).
+Numbers are the worst of all solves of a case. The condition number is that of the dense matrix on the contact set where
+Lemke's method is the independent solution; of the operator on the full grid, in closed form, elsewhere on the half-space; the
+ratio of bulk to shear modulus for finite elements; of the Jacobian for fits. Iterations are those of the active set on the
+finest grid, Newton steps, or steps of the minimisation. Differences are relative, but for those of pressures (by the largest),
+separations (by the height of the profile) and frictions that may vanish (absolute).
 
-This page is written by the tests, never by hand, and a plain run of them fails if a case is not listed or has another verdict:
+This page is written by the tests; do not edit it. A normal test run fails if a case is not listed or has another verdict:
 
     rm docs/hard_cases.md
     ASPERITY_UPDATE_HARD_CASES=1 cargo test --release --test hard_cases
 ";
 const COLUMNS: &str = "\
-| case | size | condition number | iterations | residual | second route | difference | verdict |
+| case | size | condition number | iterations | residual | independent solution | difference | verdict |
 |---|---|---|---|---|---|---|---|
 ";
 
@@ -73,7 +73,7 @@ pub fn enter(file: &str, row: Row) {
     assert_eq!(
         table.get(&key).map(word),
         Some(word(&row)),
-        "docs/hard_cases.md on `{}, {}`: write it anew as its head says",
+        "docs/hard_cases.md on `{}, {}`: regenerate it as its head says",
         row[0],
         row[1]
     );

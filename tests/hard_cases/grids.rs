@@ -114,7 +114,7 @@ fn a_translation_by_a_part_of_a_cell_changes_no_more_than_the_grid() {
         let mut case = Case::new(
             "translated by 0.25, 0.5 and 1/3 of a cell",
             format!("{points} points"),
-            "the profile where it was",
+            "the untranslated profile",
         );
         for cells in [0.25, 0.5, 1.0 / 3.0] {
             largest_difference(&mut case, points, cells, tolerance);
@@ -122,7 +122,7 @@ fn a_translation_by_a_part_of_a_cell_changes_no_more_than_the_grid() {
         case.enter();
     }
     let mut case =
-        Case::new("translated by 7 whole cells", "4096 points", "the profile where it was");
+        Case::new("translated by 7 whole cells", "4096 points", "the untranslated profile");
     // The same heights but for the round-off of their phases.
     largest_difference(&mut case, 4096, 7.0, 1e-7);
     case.enter();

@@ -1,4 +1,4 @@
-//! Rubbers and speeds at the ends of the spectrum.
+//! Relaxed and glassy limits.
 
 use crate::case::{Case, grid_condition};
 use crate::surfaces::{random_phases, shortest_wave, superposed, table_2_1};
@@ -106,7 +106,7 @@ fn the_ends_of_the_spectrum_are_elastic() {
         let mut case = Case::new(
             "rubbery and glassy end",
             format!("8192 points, {name}, 1e-20 and 1e20 m/s"),
-            "Westergaard with the modulus of that end",
+            "Westergaard with the limiting modulus",
         );
         for (speed, modulus) in
             [(1e-20, rubber.equilibrium_modulus), (1e20, rubber.glassy_modulus())]

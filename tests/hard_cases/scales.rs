@@ -1,4 +1,4 @@
-//! Amplitudes, pressures and lengths far from one.
+//! Extreme scales.
 
 use crate::case::{Case, enter_refusal, grid_condition};
 use crate::surfaces::{Profile, random_phases, shortest_wave, superposed, table_2_1};
@@ -142,7 +142,7 @@ fn pressures_that_are_none_are_refused() {
         let error = contact.solve(p).unwrap_err();
         let expected = format!("the mean pressure in Pa is {p}, it must be positive and finite");
         assert_eq!(error.to_string(), expected);
-        enter_refusal("mean pressure that is none", format!("64 points, p = {p}"), error);
+        enter_refusal("invalid mean pressure", format!("64 points, p = {p}"), error);
     }
 }
 

@@ -68,7 +68,7 @@ fn an_area_of_1e_4_is_found() {
         (131072, 6e-3),
     ] {
         let mut case = Case::new(
-            "area fraction 1e-4 wanted, one elastic sine",
+            "requested area fraction 1e-4, one elastic sine",
             format!("{points} points"),
             "pressure of Westergaard",
         );

@@ -54,7 +54,7 @@ fn condition_by_differences(samples: &[CorrelationSample], scales: &[SineScale])
 fn waves_closer_than_the_scan_tells_apart() {
     for apart in [1e-1, 1e-2, 1e-3] {
         let mut case = Case::new(
-            "two waves closer than the scan tells apart",
+            "two waves that the scan cannot resolve",
             format!("67 lags, wavelengths {apart:e} apart"),
             "power of one wave of the same amplitude",
         );
@@ -76,7 +76,7 @@ fn waves_a_ten_thousandth_apart_are_refused() {
     assert!(matches!(error, SineFitError::NotConverged { waves: 3, .. }), "{error}");
     assert!(error.to_string().ends_with("fit fewer waves or more lags"));
     enter_refusal(
-        "two waves closer than the scan tells apart",
+        "two waves that the scan cannot resolve",
         "67 lags, wavelengths 1e-4 apart",
         error,
     );
@@ -117,11 +117,8 @@ fn the_condition_number_is_that_of_the_differences() {
 /// Waves below twice the shortest lag look alike, a plateau each: the interval is infinite, not large.
 #[test]
 fn waves_that_look_alike_have_no_interval() {
-    let mut case = Case::new(
-        "three waves that are one plateau to the scan",
-        "67 lags",
-        "rms amplitude of the wave that is there",
-    );
+    let mut case =
+        Case::new("three waves seen as one plateau", "67 lags", "rms amplitude of the true wave");
     let samples = exact_correlation(&[scale(1e-5, 2e-6), scale(4e-3, 5e-5)]);
     let fit = fit_sines(&samples, &[5e-6, 1e-5, 2e-5, 4e-3]).unwrap();
     // Singular values of 1e-17 are round-off: the number itself is none.

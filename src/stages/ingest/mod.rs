@@ -2,37 +2,36 @@
 
 mod cleaning;
 mod faults;
+mod files;
 mod picture;
+mod rows;
 mod warnings;
 
 pub use cleaning::{CLEANING_FILE, cleaning_markdown};
 pub use faults::{FAULTS, FaultRow};
+pub use files::{ScanFile, find_scans, inputs};
 pub use picture::fault_picture;
 
-use super::characterise::AVERAGE;
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::{Stage, StageError};
-use crate::artifact::{
-    ArrayDataset, ArrayFile, ArraysSchema, Attribute, AttributeSchema, DatasetSchema, Digest,
-    Digesting, Input, ResultFile, Row, RunView, SchemaVersion, Storage, Table,
-};
+use crate::artifact::{ArrayDataset, Attribute, Digesting, RunView, Storage};
 use crate::requirement::{InvalidRecipe, require};
 use crate::scans::file::{CHANNELS, Format, Grid, MapLines, is_instrument, open_channel};
 use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
-use crate::scans::{
-    Described, FileError, FileProblem, Source, TextFormat, admit_source, read_source,
-};
+use crate::scans::{Described, FileError, FileProblem, Source, TextFormat, read_source};
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use crate::units::Units;
 use faults::fault_rows;
 use picture::write_pictures;
 use rayon::prelude::*;
+pub use rows::{REPORT, SCANS, ScanReportRow, WINDOWS, WindowRow, scans_schema, schemas};
+use rows::{report_row, window_rows};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 5;
@@ -128,199 +127,6 @@ fn twelve_pictures() -> usize {
 #[allow(clippy::trivially_copy_pass_by_ref)]
 fn is_twelve(pictures: &usize) -> bool {
     *pictures == twelve_pictures()
-}
-
-/// Windows of equal spacing: `scans.h5`, one dataset each, heights in m, NaN where missing.
-pub const SCANS: ArrayFile = ArrayFile {
-    file: ResultFile { stage: "ingest", name: "scans.h5" },
-    schema: "asperity.ingest.scans",
-    version: 1,
-    description: "line scans on equal spacing, form removed; NaN where a height is missing",
-};
-/// What conditioning did to each scan file: `report.arrow`.
-pub const REPORT: Table<ScanReportRow> = Table::new("ingest", "report.arrow");
-/// What became of each window: `windows.arrow`.
-pub const WINDOWS: Table<WindowRow> = Table::new("ingest", "windows.arrow");
-
-/// What conditioning did to one scan file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ScanReportRow {
-    /// Name of the scan, from its file.
-    pub scan: String,
-    /// Points in the file.
-    pub points_read: u64,
-    /// Points without a height in the file.
-    pub points_missing: u64,
-    /// Points that the spacing asks for and the file does not have.
-    pub points_absent: u64,
-    /// Points outside the valid range.
-    pub points_out_of_range: u64,
-    /// Points removed as spikes.
-    pub spikes: u64,
-    /// Spacing in the file.
-    #[schemars(extend("unit" = "um"))]
-    pub raw_spacing_um: f64,
-    /// Largest distance of a position from equal spacing.
-    #[schemars(extend("unit" = "um"))]
-    pub largest_deviation_um: f64,
-    /// Raw points averaged into one.
-    pub points_per_cell: u64,
-    /// Spacing after resampling.
-    #[schemars(extend("unit" = "um"))]
-    pub spacing_um: f64,
-    /// Windows kept.
-    pub windows_kept: u64,
-    /// Windows rejected.
-    pub windows_rejected: u64,
-}
-
-impl Row for ScanReportRow {
-    const SCHEMA: &'static str = "asperity.ingest.report";
-    const VERSION: u32 = 1;
-}
-
-/// What became of one window of a scan.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct WindowRow {
-    /// Name of the window.
-    pub window: String,
-    /// Position of its first point on the track.
-    #[schemars(extend("unit" = "mm"))]
-    pub origin_mm: f64,
-    /// Share of missing points.
-    #[schemars(extend("unit" = "1"))]
-    pub missing_share: f64,
-    /// Root mean square of the form removed; absent for rejected windows.
-    #[schemars(extend("unit" = "mm"))]
-    pub form_rms_mm: Option<f64>,
-    /// Why the window was rejected; absent for one that was kept.
-    pub rejected: Option<String>,
-}
-
-impl Row for WindowRow {
-    const SCHEMA: &'static str = "asperity.ingest.windows";
-    const VERSION: u32 = 1;
-}
-
-/// Schemas of the results.
-pub fn schemas() -> Vec<SchemaVersion> {
-    vec![SCANS.schema(), REPORT.schema(), FAULTS.schema(), WINDOWS.schema()]
-}
-
-/// What [`SCANS`] holds.
-pub fn scans_schema() -> ArraysSchema {
-    let attribute = |name, kind, description| AttributeSchema { name, kind, description };
-    ArraysSchema {
-        schema: SCANS.schema,
-        version: SCANS.version,
-        description: SCANS.description,
-        datasets: vec![DatasetSchema {
-            path: "{window}",
-            unit: "m",
-            description: "heights of a window, growing towards the rubber; the name is that of the \
-                          scan file, followed by a slash and a number where it was cut",
-            attributes: vec![
-                attribute("spacing_m", "f64", "distance between neighbouring points"),
-                attribute("origin_m", "f64", "position of the first point on the track"),
-                attribute("missing_fraction", "f64", "share of the points without a height"),
-                attribute("source", "string", "name of the scan file without its extension"),
-                attribute("source_digest", "string", "BLAKE3 digest of the scan file"),
-            ],
-        }],
-    }
-}
-
-/// A scan file with its digest.
-#[derive(Debug, Clone)]
-pub struct ScanFile {
-    /// Where it is.
-    pub path: PathBuf,
-    /// Name of the scan, from the file.
-    pub name: String,
-    /// Digest of its bytes.
-    pub digest: Digest,
-}
-
-/// Finds the scan files of `paths`, in the order of their names within each folder, and digests
-/// them.
-///
-/// # Errors
-/// [`StageError::ScanIo`], [`StageError::NoScans`], [`StageError::SameName`],
-/// [`StageError::ReservedName`].
-pub fn find_scans(paths: &[PathBuf]) -> Result<Vec<ScanFile>, StageError> {
-    let mut files = Vec::new();
-    for path in paths {
-        files.extend(files_at(path)?);
-    }
-    if files.is_empty() {
-        return Err(StageError::NoScans { paths: paths.to_vec() });
-    }
-    let mut seen: BTreeMap<String, PathBuf> = BTreeMap::new();
-    for path in &files {
-        if let Some(first) = seen.insert(scan_name(path), path.clone()) {
-            let (name, second) = (scan_name(path), path.clone());
-            return Err(StageError::SameName { name, first, second });
-        }
-        // Tables tell the windows from their average by this name.
-        if scan_name(path) == AVERAGE {
-            return Err(StageError::ReservedName { path: path.clone() });
-        }
-    }
-    files
-        .into_par_iter()
-        .map(|path| {
-            admit(&path).map_err(|source| StageError::ScanIo { path: path.clone(), source })?;
-            let digest = Digest::of_file(&path)?;
-            Ok(ScanFile { name: scan_name(&path), digest, path })
-        })
-        .collect()
-}
-
-/// Before anything is read: a device may have no end, a large file takes long to digest.
-fn admit(path: &Path) -> std::io::Result<()> {
-    crate::files::admit(path, u64::MAX)?;
-    let file = std::fs::File::open(path)?;
-    let length = file.metadata()?.len();
-    admit_source(Source::new(file, length)?)
-}
-
-fn files_at(path: &Path) -> Result<Vec<PathBuf>, StageError> {
-    let io = |source| StageError::ScanIo { path: path.to_owned(), source };
-    if !std::fs::metadata(path).map_err(io)?.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(path).map_err(io)? {
-        let entry = entry.map_err(io)?;
-        let hidden = entry.file_name().to_string_lossy().starts_with('.');
-        if hidden {
-            continue;
-        }
-        // A link to a drive that is not there is a scan that would be missed in silence.
-        let found = std::fs::metadata(entry.path())
-            .map_err(|source| StageError::ScanIo { path: entry.path(), source })?;
-        if found.is_file() {
-            files.push(entry.path());
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
-fn scan_name(path: &Path) -> String {
-    crate::files::name::text(path.file_stem().unwrap_or(path.as_os_str()))
-}
-
-/// The scan files as inputs of the stage.
-pub fn inputs(files: &[ScanFile]) -> Vec<Input> {
-    files
-        .iter()
-        .map(|file| Input {
-            name: file.name.clone(),
-            digest: file.digest,
-            origin: Some(file.path.display().to_string()),
-        })
-        .collect()
 }
 
 /// Windows of a scan, and what became of it.
@@ -588,33 +394,4 @@ pub fn read_windows(run: &RunView) -> Result<Vec<LineScan>, StageError> {
             heights: dataset.values,
         })
         .collect())
-}
-
-fn report_row(report: &ConditioningReport) -> ScanReportRow {
-    let rejected = report.windows.iter().filter(|w| w.rejected.is_some()).count();
-    ScanReportRow {
-        scan: report.scan.clone(),
-        points_read: report.points_read as u64,
-        points_missing: report.points_missing_in_file as u64,
-        points_absent: report.points_absent as u64,
-        points_out_of_range: report.points_out_of_range as u64,
-        spikes: report.spikes as u64,
-        raw_spacing_um: report.raw_spacing_um,
-        largest_deviation_um: report.largest_deviation_um,
-        points_per_cell: report.points_per_cell as u64,
-        spacing_um: report.spacing_um,
-        windows_kept: (report.windows.len() - rejected) as u64,
-        windows_rejected: rejected as u64,
-    }
-}
-
-fn window_rows(report: &ConditioningReport) -> Vec<WindowRow> {
-    let row = |window: &crate::surface::condition::WindowReport| WindowRow {
-        window: window.name.clone(),
-        origin_mm: window.origin_mm,
-        missing_share: window.missing_share,
-        form_rms_mm: window.form.as_ref().map(|form| form.rms_mm),
-        rejected: window.rejected.clone(),
-    };
-    report.windows.iter().map(row).collect()
 }
