@@ -105,7 +105,7 @@ impl ColumnType {
         }
     }
 
-    fn of_data_type(data_type: &DataType) -> Option<Self> {
+    pub(super) fn of_data_type(data_type: &DataType) -> Option<Self> {
         use ColumnType::*;
         [Float, Unsigned32, Unsigned64, Integer, Boolean, Text, FloatList]
             .into_iter()

@@ -145,7 +145,7 @@ pub(super) fn decode_rows<R: Row>(
 /// A decoded file whose content digest has been checked.
 pub(super) struct TableFile {
     pub(super) info: TableInfo,
-    batches: Vec<RecordBatch>,
+    pub(super) batches: Vec<RecordBatch>,
 }
 
 impl TableFile {

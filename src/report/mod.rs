@@ -17,5 +17,5 @@ pub use sinusoid::Study;
 pub use sinusoid_figure::study_figure;
 pub use spreadsheet::workbook;
 pub use tables::{
-    About, FrictionTable, comparison_markdown, data_frame, friction_tables, latex, markdown,
+    About, FrictionTable, comparison_markdown, friction_tables, latex, long_table, markdown,
 };

@@ -4,7 +4,7 @@
 use crate::artifact::{ArtifactError, RunView};
 use crate::stages::tables::{ComparisonRow, CorrectionRow, FrictionRow, Model};
 use crate::text::{latex_text, markdown_text};
-use polars::prelude::{Column, DataFrame, PolarsError};
+use crate::artifact::{ArtifactError, Export, Values};
 use std::fmt::Write;
 
 /// More realisations than this are left to CSV and Parquet.
@@ -133,43 +133,44 @@ impl FrictionTable {
     }
 }
 
-/// Rows as one long data frame with all digits, a column per realisation.
+/// Rows as one long table with all digits, a column per realisation.
 ///
 /// # Errors
-/// [`PolarsError`] if polars refuses the columns.
-pub fn data_frame(rows: &[FrictionRow]) -> Result<DataFrame, PolarsError> {
-    let column = |name: &str, value: fn(&FrictionRow) -> f64| {
-        Column::new(name.into(), rows.iter().map(value).collect::<Vec<f64>>())
+/// [`ArtifactError::NotRepresentable`] if Arrow refuses the columns.
+pub fn long_table(rows: &[FrictionRow]) -> Result<Export, ArtifactError> {
+    let optional = |name: &str, value: &dyn Fn(&FrictionRow) -> Option<f64>| {
+        (name.to_owned(), Values::Float(rows.iter().map(value).collect()))
     };
-    let optional = |name: &str, value: fn(&FrictionRow) -> Option<f64>| {
-        Column::new(name.into(), rows.iter().map(value).collect::<Vec<Option<f64>>>())
+    let column =
+        |name: &str, value: fn(&FrictionRow) -> f64| optional(name, &|row| Some(value(row)));
+    let count = |name: &str, value: fn(&FrictionRow) -> Option<u32>| {
+        (name.to_owned(), Values::Count(rows.iter().map(value).collect()))
     };
-    let models: Vec<&str> = rows.iter().map(|row| row.model.name()).collect();
-    let waves: Vec<u32> = rows.iter().map(|row| row.waves).collect();
+    let models = rows.iter().map(|row| row.model.to_string()).collect();
     let mut columns = vec![
-        Column::new("model".into(), models),
-        Column::new("waves".into(), waves),
+        ("model".to_owned(), Values::Text(models)),
+        count("waves", |row| Some(row.waves)),
         column("speed_mm_s", |row| row.speed_mm_s),
         column("area_fraction", |row| row.contact_area_fraction),
     ];
     let most = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
     for k in 0..most {
-        let values: Vec<Option<f64>> =
-            rows.iter().map(|row| row.realisations.get(k).copied()).collect();
-        columns.push(Column::new(format!("realisation_{}", k + 1).into(), values));
+        let name = format!("realisation_{}", k + 1);
+        columns.push(optional(&name, &|row| row.realisations.get(k).copied()));
     }
-    let half_space: Vec<Option<u32>> = rows.iter().map(|row| row.half_space_realisations).collect();
-    columns.push(Column::new("half_space_realisations".into(), half_space));
-    columns.push(column("average", |row| row.mean));
-    columns.push(optional("standard_deviation", |row| row.standard_deviation));
-    columns.push(optional("confidence_95", |row| row.confidence_95));
-    columns.push(column("interpolation_error", |row| row.interpolation_error));
-    columns.push(optional("discretisation_error", |row| row.discretisation_error));
-    columns.push(column("left_out_error", |row| row.left_out_error));
-    columns.push(optional("model_error", |row| row.model_error));
-    columns.push(optional("error_estimate", |row| row.error_estimate));
-    columns.push(column("pressure_mpa", |row| row.pressure_mpa));
-    DataFrame::new(rows.len(), columns)
+    columns.extend([
+        count("half_space_realisations", |row| row.half_space_realisations),
+        column("average", |row| row.mean),
+        optional("standard_deviation", &|row| row.standard_deviation),
+        optional("confidence_95", &|row| row.confidence_95),
+        column("interpolation_error", |row| row.interpolation_error),
+        optional("discretisation_error", &|row| row.discretisation_error),
+        column("left_out_error", |row| row.left_out_error),
+        optional("model_error", &|row| row.model_error),
+        optional("error_estimate", &|row| row.error_estimate),
+        column("pressure_mpa", |row| row.pressure_mpa),
+    ]);
+    Export::new(columns)
 }
 
 /// Tables as Markdown, each with its caption.
@@ -360,14 +361,15 @@ mod tests {
         let table = &friction_tables(&[row(8, 0.05, &[0.5; 31])])[0];
         assert_eq!(table.header().len(), 5);
         assert!(markdown(std::slice::from_ref(table), &about("x")).contains("31 realisations"));
-        assert_eq!(data_frame(&table.rows).unwrap().width(), 4 + 31 + 10);
+        assert_eq!(long_table(&table.rows).unwrap().names().len(), 4 + 31 + 10);
     }
 
     #[test]
-    fn the_data_frame_leaves_absent_realisations_empty() {
-        let frame = data_frame(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
-        assert_eq!(frame.shape(), (2, 16));
-        assert_eq!(frame.column("realisation_2").unwrap().null_count(), 1);
+    fn the_long_table_leaves_absent_realisations_empty() {
+        let table = long_table(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
+        assert_eq!(table.names().len(), 16);
+        let rows = table.first_rows(2).unwrap();
+        assert_eq!((&rows[0]["realisation_2"], &rows[1]["realisation_2"]), (&json!(0.8), &json!(null)));
     }
 
     /// Names that would end a caption, a comment or the run of LaTeX.

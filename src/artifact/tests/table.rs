@@ -36,7 +36,7 @@ fn an_empty_table_keeps_its_columns() {
     write_table::<Sample>(&path, &[], &Metadata::new()).unwrap();
     assert_eq!(read_table::<Sample>(&path).unwrap().0, []);
     assert_eq!(table_info(&path).unwrap().columns, columns::<Sample>().unwrap());
-    let frame = data_frame(&path).unwrap();
+    let frame = IpcReader::new(std::fs::File::open(&path).unwrap()).finish().unwrap();
     assert_eq!((frame.height(), frame.width()), (0, 10));
 }
 
@@ -275,17 +275,17 @@ fn polars_reads_the_values_and_exports_read_back() {
     use polars::prelude::*;
     let (folder, path) = place();
     write_table(&path, &samples(), &Metadata::new()).unwrap();
-    let frame = data_frame(&path).unwrap();
+    let frame = IpcReader::new(std::fs::File::open(&path).unwrap()).finish().unwrap();
     assert_eq!((frame.height(), frame.width()), (2, 10));
     assert_eq!(frame.column("friction").unwrap().null_count(), 1);
 
     let parquet = folder.path().join("samples.parquet");
-    std::fs::write(&parquet, parquet_bytes(&mut frame.clone()).unwrap()).unwrap();
+    std::fs::write(&parquet, Export::read(&path).unwrap().parquet().unwrap()).unwrap();
     let read = ParquetReader::new(std::fs::File::open(parquet).unwrap()).finish().unwrap();
     assert!(read.equals_missing(&frame));
 
     let csv = folder.path().join("samples.csv");
-    std::fs::write(&csv, csv_bytes(&frame).unwrap()).unwrap();
+    std::fs::write(&csv, Export::read(&path).unwrap().csv().unwrap()).unwrap();
     let mut reader = ::csv::Reader::from_path(csv).unwrap();
     let lists = frame.get_column_index("amplitudes_mm").unwrap();
     let record = reader.records().next().unwrap().unwrap();
