@@ -36,8 +36,16 @@ const MECHANICS: &[&str] = &[
 
 /// Every Rust file of a top module: `NAME.rs` and all in `NAME/`.
 fn files_of(source: &Path, module: &str) -> Vec<PathBuf> {
-    let mut folders = vec![source.join(module)];
-    let mut files: Vec<PathBuf> = vec![source.join(format!("{module}.rs"))];
+    let file = source.join(format!("{module}.rs"));
+    let mut files = files_below(&source.join(module));
+    files.extend(Some(file).filter(|file| file.is_file()));
+    files
+}
+
+/// Every Rust file of a folder and those in it.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut folders = vec![folder.to_owned()];
+    let mut files = vec![];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).into_iter().flatten() {
             let path = entry.unwrap().path();
@@ -48,7 +56,6 @@ fn files_of(source: &Path, module: &str) -> Vec<PathBuf> {
             }
         }
     }
-    files.retain(|file| file.is_file());
     files
 }
 
@@ -121,4 +128,17 @@ fn the_mechanics_use_nothing_of_one_operating_system() {
             assert!(!text.contains("std::os::"), "{}", file.display());
         }
     }
+}
+
+/// Figures look alike because one module draws them.
+#[test]
+fn only_the_plot_module_draws() {
+    let library = concat!("plot", "ters");
+    let folders = ["src", "crates", "tests", "benches", "examples"];
+    let files = folders.iter().flat_map(|folder| files_below(&project().join(folder)));
+    let (plot, others): (Vec<PathBuf>, Vec<PathBuf>) = files
+        .filter(|file| std::fs::read_to_string(file).unwrap().contains(library))
+        .partition(|file| file.starts_with(project().join("src/plot")));
+    assert!(!plot.is_empty());
+    assert_eq!(others, Vec::<PathBuf>::new());
 }

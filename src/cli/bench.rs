@@ -111,7 +111,7 @@ impl Bench {
             let say = |method: &str| note(quiet, format_args!("{}: {method}", case.name));
             results.push(case.run(self.effort(), &say)?);
         }
-        let plot = || figure(&results).map_err(CliError::failure);
+        let plot = || figure(&results).svg().map_err(CliError::failure);
         match self.format {
             Format::Svg => self.write(&plot()?),
             Format::Json => self.write(&json(&results)?),

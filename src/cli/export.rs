@@ -148,7 +148,7 @@ impl Export {
                 let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
                 write_file(path, self.force, |out| out.write_all(&bytes))
             }
-            Format::Svg => self.text(&friction_figure(&tables)?),
+            Format::Svg => self.text(&friction_figure(&rows).svg()?),
             Format::Parquet => {
                 let Some(path) = &self.to else {
                     return Err(CliError::input("Parquet is binary: give a file with --to"));

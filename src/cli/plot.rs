@@ -60,7 +60,7 @@ impl Plot {
         let view = run_folder::view_of_case(run)?;
         let figure = kind.figure(&view)?.ok_or_else(|| {
             let run = run.display();
-            CliError::input(format!("{run} has no figure `{name}`: that takes {}", kind.wants))
+            CliError::input(format!("{run} has no figure `{name}`: it needs {}", kind.requires))
         })?;
         let doubts = LastRun::read(run, quiet).map(|last| last.doubts(&view)).unwrap_or_default();
         for (_, doubt) in doubts.iter().filter(|(stage, _)| kind.stages.contains(stage)) {

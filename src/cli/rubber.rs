@@ -8,7 +8,7 @@ use clap::{Args, Subcommand, ValueEnum};
 
 use super::output::{already_exists, json, note, print, refuse_existing, write_file};
 use super::{CliError, values};
-use crate::report::rubber_figure;
+use crate::report::rubber_fit_figure;
 use crate::rubber::fit::{
     DescribedColumn, FitError, FitOptions, LeftOut, MasterCurve, ModulusKind, ReducedPoint,
     SweepTable, TableOptions, VerticalChoice, doubts, fit_sweeps, read_shift_factors, read_sweeps,
@@ -185,7 +185,7 @@ impl Fit {
         }
         let source = source(&self.sweep, &fit);
         let text = to_toml(&fit.rubber(&self.name(), self.poisson_ratio), &source);
-        let svg = self.plot.as_ref().map(|_| rubber_figure(&fit)).transpose();
+        let svg = self.plot.as_ref().map(|_| rubber_fit_figure(&fit).svg()).transpose();
         let svg = svg.map_err(CliError::failure)?;
         write_file(&self.to, self.force, |out| out.write_all(text.as_bytes()))?;
         if let (Some(path), Some(svg)) = (&self.plot, svg) {

@@ -7,7 +7,7 @@ mod warnings;
 
 pub use cleaning::{CLEANING_FILE, cleaning_markdown};
 pub use faults::{FAULTS_FILE, FaultRow};
-pub use picture::fault_picture;
+pub use picture::fault_figure;
 
 use super::characterise::AVERAGE;
 use super::contract::{Context, Contract, Inputs, Planned, Request};

@@ -18,7 +18,7 @@ impl Export {
         }
         match self.format {
             Format::Markdown => self.text(&read(view)?.markdown()),
-            Format::Svg => self.text(&study_figure(&read(view)?)?),
+            Format::Svg => self.text(&study_figure(&read(view)?).svg()?),
             Format::Csv => self.study_csv(view),
             Format::Latex | Format::Parquet | Format::Xlsx => {
                 Err(CliError::input("the study of one sine is exported as markdown, csv or svg"))

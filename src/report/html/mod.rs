@@ -171,8 +171,8 @@ impl Report<'_> {
         let Some(kind) = Kind::named(name) else { return Ok(html! {}) };
         let Some(figure) = kind.figure(self.run)? else {
             return Ok(page::absent(&format!(
-                "No figure of {}: that takes {}.",
-                kind.shows, kind.wants
+                "No figure of {}: it needs {}.",
+                kind.shows, kind.requires
             )));
         };
         let elements = figure
