@@ -18,7 +18,6 @@ const PROGRAM: &[&str] = &[
     "schemas",
     "forecast",
     "bench",
-    "cli",
 ];
 
 /// Modules of the mechanics, the lowest first.
@@ -82,7 +81,9 @@ fn upward(source: &Path, order: &[&str]) -> BTreeSet<String> {
             }
         }
     }
-    let known = |name: &str| order.contains(&name) || ["lib", "main", "layers"].contains(&name);
+    // The command line is a target of its own, which nothing can import.
+    let outside = ["lib", "main", "cli", "layers"];
+    let known = |name: &str| order.contains(&name) || outside.contains(&name);
     for entry in std::fs::read_dir(source).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();

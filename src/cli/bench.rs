@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 
 use super::output::{json, note, print, refuse_existing, write_file};
 use super::{CliError, threads};
-use crate::bench::figure::figure;
-use crate::bench::growth::{self, Job};
-use crate::bench::measure::Effort;
-use crate::bench::{report, select};
+use asperity::bench::figure::figure;
+use asperity::bench::growth::{self, Job};
+use asperity::bench::measure::Effort;
+use asperity::bench::{report, select};
 
 /// Hidden option by which the executable is started again for one job of the growth.
 const GROWTH_JOB: &str = "--growth-job";

@@ -9,9 +9,9 @@ use super::CliError;
 use super::inspect::{ScanOptions, read_instrument};
 use super::output::{note, print, refuse_existing, write_file};
 use super::solve::refuse_to_overwrite;
-use crate::scans::Described;
-use crate::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
-use crate::surface::RawScan;
+use asperity::scans::Described;
+use asperity::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
+use asperity::surface::RawScan;
 
 /// Positions that are further than this share of the spacing from equal spacing are information
 /// that X3P and SDF have no place for.

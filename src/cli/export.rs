@@ -12,20 +12,20 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{note, print, refuse_existing, write_file};
 use super::run_folder;
-use crate::artifact::{
+use asperity::artifact::{
     ArtifactError, RunView, csv_bytes, data_frame as data_frame_of, parquet_bytes,
 };
-use crate::report::{
+use asperity::report::{
     About, FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
     markdown, workbook,
 };
-use crate::stages::Stage;
-use crate::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE, cleaning_markdown};
-use crate::stages::tables::{
+use asperity::stages::Stage;
+use asperity::stages::ingest::{FAULTS_FILE, REPORT_FILE, WINDOWS_FILE, cleaning_markdown};
+use asperity::stages::tables::{
     COMPARISON_FILE, CORRECTIONS_FILE, ComparisonRow, CorrectionRow, FRICTION_FILE, FrictionRow,
     Model, NOTE_KEY,
 };
-use crate::sweep::STAGE;
+use asperity::sweep::STAGE;
 
 const EXAMPLES: &str = "\
 Examples:

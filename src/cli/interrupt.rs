@@ -5,7 +5,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use super::CliError;
-use crate::numerics;
+use asperity::numerics;
 
 /// Whether the user has pressed Ctrl-C, or SIGTERM has come, since the installation.
 #[derive(Debug, Clone)]

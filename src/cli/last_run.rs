@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize};
 use super::CliError;
 use super::output::{json, note};
 use super::recipe_options::{with_scans, with_tolerance};
-use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
-use crate::pipeline::{self, State};
-use crate::recipe::{Recipe, RecipeError};
-use crate::report::html::Origin;
-use crate::stages::Stage;
-use crate::sweep::slurm::shell_path;
+use asperity::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
+use asperity::pipeline::{self, State};
+use asperity::recipe::{Recipe, RecipeError};
+use asperity::report::html::Origin;
+use asperity::stages::Stage;
+use asperity::sweep::slurm::shell_path;
 
 const SCHEMA: &str = "asperity.last_run";
 
@@ -24,17 +24,17 @@ pub(super) struct LastRun {
     /// Always [`SCHEMA`]; empty in notes of earlier versions.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     schema: String,
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     recipe: PathBuf,
     /// The recipe as seen from the run folder, which stays when both are moved.
     #[serde(
         default,
-        with = "crate::files::name::optional_path",
+        with = "asperity::files::name::optional_path",
         skip_serializing_if = "Option::is_none"
     )]
     recipe_from_here: Option<PathBuf>,
     /// Those of the command line.
-    #[serde(with = "crate::files::name::paths")]
+    #[serde(with = "asperity::files::name::paths")]
     scans: Vec<PathBuf>,
     /// That of the command line.
     #[serde(default)]
@@ -238,7 +238,7 @@ impl LastRun {
     fn doubt_by_note(&self, out: &Path, stage: &str) -> Option<String> {
         let path = self.recipe_for(out);
         let text = self.text.as_ref()?;
-        if crate::files::read_settings(&path).is_ok_and(|now| now == *text) {
+        if asperity::files::read_settings(&path).is_ok_and(|now| now == *text) {
             return None;
         }
         // A text that this version cannot read any more tells nothing; the recipe has had its say.

@@ -6,8 +6,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use super::CliError;
-use crate::artifact::temporary_beside;
-use crate::text::{cut, visible, visible_line};
+use asperity::artifact::temporary_beside;
+use asperity::text::{cut, visible, visible_line};
 
 /// Prints a result to standard output, control characters of names in it visibly. A reader that has
 /// seen enough, such as `head`, is no error.

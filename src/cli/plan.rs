@@ -9,7 +9,7 @@ use super::output::{json, print, significant};
 use super::progress::Spinner;
 use super::recipe_options::RecipeOptions;
 use super::{CliError, threads, values};
-use crate::forecast::{Forecast, ScaleModel, forecast};
+use asperity::forecast::{Forecast, ScaleModel, forecast};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -5,8 +5,8 @@ use super::last_run::LastRun;
 use super::output::{aligned, note, print, write_file};
 use super::run_folder;
 use super::values::meant;
-use crate::plot::png;
-use crate::report::figures::{ALL, Kind};
+use asperity::plot::png;
+use asperity::report::figures::{ALL, Kind};
 use clap::Args;
 use std::path::PathBuf;
 

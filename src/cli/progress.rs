@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::stages::Stage;
+use asperity::stages::Stage;
 
 /// A stage that is done sooner needs no bar.
 const DELAY: Duration = Duration::from_secs(1);

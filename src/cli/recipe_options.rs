@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::last_run::LastRun;
 use super::{CliError, values};
-use crate::files;
-use crate::recipe::{Recipe, RecipeError};
+use asperity::files;
+use asperity::recipe::{Recipe, RecipeError};
 
 /// Recipe, scans and run folder.
 #[derive(Debug, Args)]

@@ -8,13 +8,13 @@ use clap::{Args, Subcommand, ValueEnum};
 
 use super::output::{already_exists, json, note, print, refuse_existing, write_file};
 use super::{CliError, values};
-use crate::report::rubber_fit_figure;
-use crate::rubber::fit::{
+use asperity::report::rubber_fit_figure;
+use asperity::rubber::fit::{
     DescribedColumn, FitError, FitOptions, LeftOut, MasterCurve, ModulusKind, ReducedPoint,
     SweepTable, TableOptions, VerticalChoice, doubts, fit_sweeps, read_shift_factors, read_sweeps,
 };
-use crate::rubber::to_toml;
-use crate::scans::description::{DecimalMark, Separator};
+use asperity::rubber::to_toml;
+use asperity::scans::description::{DecimalMark, Separator};
 use summary::Summary;
 
 const EXAMPLES: &str = "\
@@ -299,13 +299,13 @@ impl Fit {
     }
 
     fn name(&self) -> String {
-        let of_file = || self.to.file_stem().map(crate::files::name::text);
+        let of_file = || self.to.file_stem().map(asperity::files::name::text);
         self.name.clone().or_else(of_file).unwrap_or_else(|| "rubber".into())
     }
 }
 
 fn file_name(path: &Path) -> String {
-    crate::files::name::text(path.file_name().unwrap_or(path.as_os_str()))
+    asperity::files::name::text(path.file_name().unwrap_or(path.as_os_str()))
 }
 
 /// What the rubber file says of its source.

@@ -1,6 +1,6 @@
 //! `asperity run`: a recipe from scans to tables.
 
-use crate::stages;
+use asperity::stages;
 use clap::Args;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,13 +14,13 @@ use super::progress::{Bar, Progress};
 use super::recipe_options::{RecipeOptions, TakeOver};
 use super::sweep::{claim_sweep, note_recipes, tell, warnings};
 use super::{CliError, threads, values};
-use crate::artifact::{Manifest, RunFolder, RunView};
-use crate::files::name::path_text;
-use crate::pipeline::{Event, PipelineError, Ready, Selection};
-use crate::recipe::Recipe;
-use crate::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
-use crate::stages::{Stage, Watch};
-use crate::sweep;
+use asperity::artifact::{Manifest, RunFolder, RunView};
+use asperity::files::name::path_text;
+use asperity::pipeline::{Event, PipelineError, Ready, Selection};
+use asperity::recipe::Recipe;
+use asperity::stages::ingest::{CLEANING_FILE, FAULTS_FILE, FaultRow};
+use asperity::stages::{Stage, Watch};
+use asperity::sweep;
 
 const EXAMPLES: &str = "\
 Examples:

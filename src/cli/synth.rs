@@ -9,8 +9,8 @@ use clap::Args;
 use super::interrupt::Interrupt;
 use super::output::{already_exists, note, print, significant, write_file};
 use super::{CliError, values};
-use crate::error_kind::HasKind;
-use crate::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
+use asperity::error_kind::HasKind;
+use asperity::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
 
 /// All scans are held in memory, 16 bytes a point.
 const MAX_TOTAL_POINTS: f64 = (1_u64 << 28) as f64;

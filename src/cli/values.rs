@@ -5,9 +5,9 @@ use std::str::FromStr;
 use serde::de::{DeserializeOwned, value::Error};
 use serde::de::{IntoDeserializer, value::StrDeserializer};
 
-use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
-use crate::files::nearest;
-use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use asperity::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
+use asperity::files::nearest;
+use asperity::scans::description::{Column, DecimalMark, LengthUnit, Separator};
 
 /// A number that is finite; `NaN` and `inf` are no quantities.
 pub(super) fn finite(text: &str) -> Result<f64, String> {

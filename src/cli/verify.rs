@@ -9,11 +9,11 @@ use serde::Serialize;
 use super::CliError;
 use super::last_run::LastRun;
 use super::output::{json, print};
-use crate::artifact::{
+use asperity::artifact::{
     Input, Manifest, PACK_EXTENSION, RunView, SOLVES_FOLDER, read_pack_info, read_stored_solve,
 };
-use crate::stages::Stage;
-use crate::sweep::{self, CASES_FOLDER, SURFACES_FOLDER};
+use asperity::stages::Stage;
+use asperity::sweep::{self, CASES_FOLDER, SURFACES_FOLDER};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -1,9 +1,9 @@
 //! Export of the study of one sine wave.
 
 use super::{Export, Format};
-use crate::artifact::{RunView, csv_bytes, data_frame};
 use crate::cli::CliError;
-use crate::report::{Study, study_figure};
+use asperity::artifact::{RunView, csv_bytes, data_frame};
+use asperity::report::{Study, study_figure};
 
 const STAGE: &str = "sinusoid";
 

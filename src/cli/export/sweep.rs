@@ -1,11 +1,11 @@
 //! The tables of all cases of a sweep.
 
 use super::{CliError, Export, Format, csv_text, print};
-use crate::artifact::{RunView, csv_bytes, data_frame, parquet_bytes};
-use crate::report::{About, friction_tables, latex, markdown};
-use crate::stages::tables::FrictionRow;
-use crate::sweep::{FRICTION_FILE, STAGE, SweepFrictionRow};
-use crate::text::{markdown_text, visible_line};
+use asperity::artifact::{RunView, csv_bytes, data_frame, parquet_bytes};
+use asperity::report::{About, friction_tables, latex, markdown};
+use asperity::stages::tables::FrictionRow;
+use asperity::sweep::{FRICTION_FILE, STAGE, SweepFrictionRow};
+use asperity::text::{markdown_text, visible_line};
 use std::fmt::Write;
 
 impl Export {
@@ -48,7 +48,7 @@ impl Export {
     fn document(
         &self,
         view: &RunView,
-        one: impl Fn(&str, &[crate::report::FrictionTable], &About) -> String,
+        one: impl Fn(&str, &[asperity::report::FrictionTable], &About) -> String,
     ) -> Result<(), CliError> {
         let (rows, _) = view.read_table::<SweepFrictionRow>(STAGE, FRICTION_FILE)?;
         let manifest = view.stage_manifest(STAGE)?;

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use super::ladder::Extent;
 use crate::cli::CliError;
 use crate::cli::inspect::matrix_problem;
-use crate::scans::file::{Grid, MapLines, ScanFile, parse_file};
-use crate::scans::text_shape::TextShape;
-use crate::scans::{Described, TextFormat, parse_described, read_bytes};
+use asperity::scans::file::{Grid, MapLines, ScanFile, parse_file};
+use asperity::scans::text_shape::TextShape;
+use asperity::scans::{Described, TextFormat, parse_described, read_bytes};
 
 /// What was seen of all files.
 pub(super) struct Look {

@@ -11,8 +11,8 @@ use clap::Args;
 
 use super::CliError;
 use super::output::{note, print, write_file};
-use crate::recipe::Recipe;
-use crate::scans::file::MapLines;
+use asperity::recipe::Recipe;
+use asperity::scans::file::MapLines;
 use ladder::Ladder;
 use look::Look;
 use relative::{quoted, relative};

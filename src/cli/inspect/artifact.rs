@@ -7,12 +7,12 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::provenance::Provenance;
-use crate::artifact::{
+use crate::cli::CliError;
+use crate::cli::output::{aligned, significant};
+use asperity::artifact::{
     ArrayDataset, ArraysInfo, Attribute, Column, DatasetInfo, TableInfo, arrays_info, data_frame,
     read_arrays, table_info,
 };
-use crate::cli::CliError;
-use crate::cli::output::{aligned, significant};
 
 const FIRST_ROWS: usize = 5;
 /// polars hides the middle of wider tables.
@@ -21,7 +21,7 @@ const COLUMNS_ABREAST: usize = 8;
 /// A table.
 #[derive(Debug, Serialize)]
 pub(super) struct Table {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     info: TableInfo,
@@ -34,7 +34,7 @@ pub(super) struct Table {
 /// A file of arrays.
 #[derive(Debug, Serialize)]
 pub(super) struct Arrays {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     info: ArraysInfo,
@@ -115,7 +115,7 @@ fn rows(frame: &DataFrame) -> Vec<Map<String, Value>> {
     (0..frame.height()).map(row).collect()
 }
 
-/// The types that a table can have; see [`crate::artifact::ColumnType`].
+/// The types that a table can have; see [`asperity::artifact::ColumnType`].
 fn to_json(value: &AnyValue) -> Value {
     match value {
         AnyValue::Null => Value::Null,

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cli::output::{aligned, significant};
-use crate::scans::file::{Grid, OpenScan, Statistics};
+use asperity::scans::file::{Grid, OpenScan, Statistics};
 
 /// An instrument file, summarised.
 #[derive(Debug, Serialize)]
 pub(super) struct InstrumentFile {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: String,
     /// How the format was told.

@@ -18,14 +18,14 @@ use serde::Serialize;
 
 use super::CliError;
 use super::output::{json, print};
-use crate::scans::file::{
+use artifact::{Arrays, Table};
+use asperity::scans::file::{
     DETECTED_BY, Format as InstrumentFormat, Grid, OpenScan, ScanFile, foreign as named,
     open_channel, read_channel,
 };
-use crate::scans::spreadsheet::is_workbook;
-use crate::scans::text_shape::TextShape as Shape;
-use crate::scans::{Described, FileError, Source, read_bytes};
-use artifact::{Arrays, Table};
+use asperity::scans::spreadsheet::is_workbook;
+use asperity::scans::text_shape::TextShape as Shape;
+use asperity::scans::{Described, FileError, Source, read_bytes};
 use folder::{ManifestFile, Run, Stage};
 use instrument::InstrumentFile;
 use scan::Scan;
@@ -284,7 +284,7 @@ fn is_utf_16(start: &[u8]) -> bool {
 fn first_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // To open a named pipe waits for a writer.
-    crate::files::admit(path, u64::MAX)?;
+    asperity::files::admit(path, u64::MAX)?;
     File::open(path)?.take(DETECTED_BY as u64).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::artifact::{ArtifactError, Digest, Input, Manifest, Output};
 use crate::cli::CliError;
+use asperity::artifact::{ArtifactError, Digest, Input, Manifest, Output};
 
 /// Whether a file is the one that its manifest speaks of.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -124,7 +124,7 @@ pub(super) fn read_manifest(path: &Path) -> Result<Manifest, CliError> {
             path.display()
         ))
     };
-    let bytes = crate::files::read(path, crate::files::LARGEST_NUMBERS)
+    let bytes = asperity::files::read(path, asperity::files::LARGEST_NUMBERS)
         .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
     // Another kind or version may have other fields, so the header is judged alone.
     let header: Header = serde_json::from_slice(&bytes).map_err(unreadable)?;

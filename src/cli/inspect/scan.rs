@@ -9,13 +9,13 @@ use serde::Serialize;
 use super::foreign;
 use crate::cli::output::{aligned, significant};
 use crate::cli::{CliError, values};
-use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
-use crate::scans::spreadsheet::is_workbook;
-use crate::scans::text_shape::TextShape;
-use crate::scans::{Described, TextFormat, read_bytes, read_described};
-use crate::surface::RawScan;
-use crate::surface::faults::merge_repeated;
-use crate::surface::resample::place_on_grid;
+use asperity::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use asperity::scans::spreadsheet::is_workbook;
+use asperity::scans::text_shape::TextShape;
+use asperity::scans::{Described, TextFormat, read_bytes, read_described};
+use asperity::surface::RawScan;
+use asperity::surface::faults::merge_repeated;
+use asperity::surface::resample::place_on_grid;
 use statrs::statistics::{Data, OrderStatistics};
 
 const FIRST_POINTS: usize = 5;
@@ -233,7 +233,7 @@ impl ScanOptions {
 /// A raw scan, summarised.
 #[derive(Debug, Serialize)]
 pub(super) struct Scan {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: &'static str,
     pub(super) points: usize,

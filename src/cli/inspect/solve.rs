@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::artifact::{SOLVE_SCHEMA, StoredSolve, read_stored_solve};
 use crate::cli::CliError;
 use crate::cli::output::aligned;
+use asperity::artifact::{SOLVE_SCHEMA, StoredSolve, read_stored_solve};
 
 /// One result of a sweep, kept so that a stopped run goes on from it.
 #[derive(Debug, Serialize)]
 pub(super) struct Solve {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     stored: StoredSolve,

@@ -8,11 +8,11 @@ use super::foreign;
 use super::scan::Scan;
 use crate::cli::CliError;
 use crate::cli::output::{aligned, significant};
-use crate::scans::description::{DecimalMark, LengthUnit, Separator};
-use crate::scans::file::{Grid, ScanFile};
-use crate::scans::spreadsheet;
-use crate::scans::text_shape::{self, separator_text};
-use crate::scans::{Described, parse_described};
+use asperity::scans::description::{DecimalMark, LengthUnit, Separator};
+use asperity::scans::file::{Grid, ScanFile};
+use asperity::scans::spreadsheet;
+use asperity::scans::text_shape::{self, separator_text};
+use asperity::scans::{Described, parse_described};
 
 /// More columns than a file of profiles has; without names they are the rows of a height map.
 const MOST_COLUMNS: usize = 12;
@@ -20,7 +20,7 @@ const MOST_COLUMNS: usize = 12;
 /// What a text looks like.
 #[derive(Debug, Serialize)]
 pub(super) struct TextShape {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: &'static str,
     /// Of a workbook, where it is not the first.
@@ -82,7 +82,7 @@ impl TextShape {
     /// # Errors
     /// [`CliError::Input`] for a file that cannot be read or holds no columns of numbers.
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
-        let bytes = crate::scans::read_bytes(path)
+        let bytes = asperity::scans::read_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         let is_workbook = spreadsheet::is_workbook(&bytes);
         let what = match is_workbook {

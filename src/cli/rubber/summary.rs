@@ -1,11 +1,11 @@
 //! What a fit prints: a table, or JSON.
 
 use crate::cli::output::{aligned, significant};
-use crate::rubber::fit::{
+use asperity::rubber::fit::{
     Candidate, Estimate, FittedLaw, FittedTerm, FittedVertical, LeftOut, MasterCurve, Misfit,
     ShiftFactor,
 };
-use crate::rubber::{FrequencyRange, ShiftLaw, VerticalShift};
+use asperity::rubber::{FrequencyRange, ShiftLaw, VerticalShift};
 use serde::Serialize;
 
 /// What is printed; the names are the keys of the JSON object, in SI but for units in names.
@@ -60,7 +60,7 @@ impl<'a> Summary<'a> {
         }
         text += "\n";
         let percent = |value: f64| format!("{} %", significant(100.0 * value));
-        let of = |d: &crate::rubber::fit::Deviation| {
+        let of = |d: &asperity::rubber::fit::Deviation| {
             format!("{} rms, {} at most", percent(d.rms), percent(d.largest))
         };
         let range = self.measured;

@@ -13,12 +13,12 @@ use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
 use crate::cli::{CliError, values};
-use crate::contact::refine::{
+use asperity::contact::refine::{
     HALF_SPACE, OnGrid, RefineError, Refined, Refinement, Watched, on_grid,
 };
-use crate::contact::sliding::POINTS_RANGE;
-use crate::contact::{ContactError, ContactSolution, SlidingContact};
-use crate::rubber::Rubber;
+use asperity::contact::sliding::POINTS_RANGE;
+use asperity::contact::{ContactError, ContactSolution, SlidingContact};
+use asperity::rubber::Rubber;
 
 /// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
 const AREA_TOLERANCE: f64 = 1e-6;

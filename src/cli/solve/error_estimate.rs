@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::contact::refine::GridError;
+use asperity::contact::refine::GridError;
 
 /// Estimated errors, absolute. Those of the friction coefficient first; a single solve at a given
 /// load has no realisations and interpolates nothing.

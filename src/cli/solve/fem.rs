@@ -13,15 +13,17 @@ use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{json, note, print, refuse_existing, write_file};
 use crate::cli::progress::Spinner;
 use crate::cli::{CliError, threads, values};
-use crate::contact::SlidingContact;
-use crate::contact::refine::{FINITE_ELEMENTS, OnGrid, RefineError, Refinement, Watched, on_grid};
-use crate::error_kind::HasKind;
-use crate::fem::error::{FemError, PathEnd};
-use crate::fem::profile::RigidProfile;
-use crate::fem::steady::solution::SteadySolution;
-use crate::fem::steady::{BlockOptions, SteadyContact};
-use crate::fem::transient::{FlowRule, TransientContact, TransientOptions};
-use crate::rubber::{Rheology, Rubber};
+use asperity::contact::SlidingContact;
+use asperity::contact::refine::{
+    FINITE_ELEMENTS, OnGrid, RefineError, Refinement, Watched, on_grid,
+};
+use asperity::error_kind::HasKind;
+use asperity::fem::error::{FemError, PathEnd};
+use asperity::fem::profile::RigidProfile;
+use asperity::fem::steady::solution::SteadySolution;
+use asperity::fem::steady::{BlockOptions, SteadyContact};
+use asperity::fem::transient::{FlowRule, TransientContact, TransientOptions};
+use asperity::rubber::{Rheology, Rubber};
 
 /// Relative to the wanted fraction; below what a mesh resolves.
 const AREA_TOLERANCE: f64 = 1e-4;

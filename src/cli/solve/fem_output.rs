@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::error_estimate::ErrorEstimate;
 use crate::cli::output::{aligned, significant};
-use crate::contact::refine::Refined;
-use crate::fem::steady::solution::SteadySolution;
-use crate::fem::transient::{Sample, TransientSolution};
+use asperity::contact::refine::Refined;
+use asperity::fem::steady::solution::SteadySolution;
+use asperity::fem::transient::{Sample, TransientSolution};
 
 /// What is printed; the names are the keys of the JSON object, those of `solve bem` first.
 #[derive(Debug, Serialize)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::shape::Shape;
 use crate::cli::{CliError, values};
-use crate::rubber::{
+use asperity::rubber::{
     FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
 };
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::shape::Shape;
 use crate::cli::values;
-use crate::files;
-use crate::scans::description::LengthUnit;
+use asperity::files;
+use asperity::scans::description::LengthUnit;
 
 /// Largest deviation of a position from equal spacing, in spacings: positions printed with few
 /// digits pass, a missing or a doubled point does not.

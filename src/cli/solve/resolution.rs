@@ -2,7 +2,7 @@
 
 use crate::cli::CliError;
 use crate::cli::output::significant;
-use crate::fem::profile::RigidProfile;
+use asperity::fem::profile::RigidProfile;
 
 /// Columns on the shortest wave without --columns: friction is then within about half a percent
 /// of the limit for usual areas.

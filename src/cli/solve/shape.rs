@@ -6,10 +6,10 @@ use clap::{ArgGroup, Args};
 
 use super::profile_file::read_profile;
 use crate::cli::{CliError, values};
-use crate::contact::sliding::{POINTS_RANGE, resample};
-use crate::fem::profile::RigidProfile;
-use crate::scans::description::LengthUnit;
-use crate::surface::{Wave, wave};
+use asperity::contact::sliding::{POINTS_RANGE, resample};
+use asperity::fem::profile::RigidProfile;
+use asperity::scans::description::LengthUnit;
+use asperity::surface::{Wave, wave};
 
 /// Five digits of the friction of one sine need a thousand points over its length.
 const LEAST_DEFAULT_POINTS: usize = 1024;

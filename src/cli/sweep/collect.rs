@@ -7,8 +7,8 @@ use super::super::{CliError, values};
 use super::plan::describe;
 use super::submit::{SlurmOptions, submit};
 use super::{PlanPath, display, note_recipes, set_threads, tell, watched};
-use crate::artifact::Manifest;
-use crate::sweep::{Cases, Layout, STAGE, SweepPlan, check, collect, plan, read_plan};
+use asperity::artifact::Manifest;
+use asperity::sweep::{Cases, Layout, STAGE, SweepPlan, check, collect, plan, read_plan};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\

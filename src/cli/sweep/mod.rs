@@ -16,10 +16,10 @@ use super::last_run::LastRun;
 use super::output::note;
 use super::progress::Bar;
 use super::{CliError, threads};
-use crate::artifact::RunView;
-use crate::recipe::{Case, Recipe};
-use crate::stages::{Stage, Watch};
-use crate::sweep::{Layout, RECIPE_FILE, SweepError};
+use asperity::artifact::RunView;
+use asperity::recipe::{Case, Recipe};
+use asperity::stages::{Stage, Watch};
+use asperity::sweep::{Layout, RECIPE_FILE, SweepError};
 
 /// Spread the cases of a recipe over many machines: plan, submit or run shards, collect.
 #[derive(Debug, Subcommand)]

@@ -7,7 +7,7 @@ use super::super::output::{json as json_text, note, print};
 use super::super::recipe_options::{RecipeOptions, TakeOver};
 use super::super::{CliError, values};
 use super::{claim_sweep, duration, watched};
-use crate::sweep::{SweepPlan, plan};
+use asperity::sweep::{SweepPlan, plan};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -55,7 +55,7 @@ impl Plan {
             let seconds: Vec<f64> = plan.seconds().collect();
             let tasks: Vec<usize> = plan.shards.iter().map(|shard| shard.tasks).collect();
             return print(&json_text(&json!({
-                "plan": crate::files::name::path_text(&path),
+                "plan": asperity::files::name::path_text(&path),
                 "cases": plan.cases,
                 "tasks": tasks,
                 "seconds": seconds,

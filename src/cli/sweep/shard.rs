@@ -5,7 +5,7 @@ use clap::Args;
 use super::super::output::{json, note, print};
 use super::super::{CliError, values};
 use super::{PlanPath, set_threads, watched};
-use crate::sweep::run_shard;
+use asperity::sweep::run_shard;
 
 const EXAMPLES: &str = "\
 Examples:

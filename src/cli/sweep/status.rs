@@ -5,7 +5,7 @@ use clap::Args;
 use super::super::CliError;
 use super::super::output::{json, print};
 use super::PlanPath;
-use crate::sweep::{ShardState, read_plan, states};
+use asperity::sweep::{ShardState, read_plan, states};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -9,8 +9,8 @@ use clap::Args;
 use super::super::output::print;
 use super::super::{CliError, values};
 use super::PlanPath;
-use crate::sweep::slurm::{DEFAULT_MAX_ARRAY_SIZE, Request, scripts};
-use crate::sweep::{Layout, SweepPlan, read_plan};
+use asperity::sweep::slurm::{DEFAULT_MAX_ARRAY_SIZE, Request, scripts};
+use asperity::sweep::{Layout, SweepPlan, read_plan};
 
 const EXAMPLES: &str = "\
 Examples:
