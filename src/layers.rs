@@ -17,7 +17,6 @@ const PROGRAM: &[&str] = &[
     "sweep",
     "schemas",
     "forecast",
-    "bench",
 ];
 
 /// Modules of the mechanics, the lowest first.

@@ -67,8 +67,6 @@ pub use asperity_files as files;
 pub use asperity_scans as scans;
 
 pub mod artifact;
-#[doc(hidden)]
-pub mod bench;
 pub mod forecast;
 #[cfg(test)]
 mod layers;

@@ -3,7 +3,6 @@
 //! Results go to standard output, everything else to standard error. Exit code 0 is success, 1 a
 //! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
 
-mod bench;
 mod convert;
 mod error;
 mod export;
@@ -71,7 +70,6 @@ enum Command {
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
     Verify(verify::Verify),
-    Bench(bench::Bench),
     Completions(shell::Completions),
     Man(shell::Man),
 }
@@ -95,7 +93,6 @@ impl Arguments {
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),
-            Command::Bench(command) => command.run(self.quiet),
             Command::Init(command) => command.run(self.quiet),
             Command::Verify(command) => command.run(),
             Command::Completions(command) => command.run(),

@@ -1,7 +1,7 @@
 //! Error against seconds, one line for each solver.
 
 use super::{CaseResult, Line};
-use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
+use asperity::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 
 /// The mark of a line.
 type Look = fn(Points) -> Mark;

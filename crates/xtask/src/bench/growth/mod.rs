@@ -7,12 +7,12 @@ mod job;
 mod memory;
 mod report;
 
-pub use job::{Job, Sample, SolveCost};
+pub use job::{Job, Sample};
 pub use report::markdown;
 
 use super::measure::Effort;
-use crate::error_kind::{ErrorKind, HasKind};
-use crate::numerics::statistics::least_squares_line;
+use asperity::error_kind::{ErrorKind, HasKind};
+use asperity::numerics::statistics::least_squares_line;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;

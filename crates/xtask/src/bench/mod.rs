@@ -13,8 +13,10 @@
 //! | `campaign` | small recipes run through the pipeline |
 //! | [`growth`] | time and memory over the size of a job, with exponents |
 //! | [`report`], [`figure`] | tables and the plot |
+//! | [`command`] | the task and its options |
 
 mod campaign;
+pub mod command;
 pub mod figure;
 mod finite_deformation;
 pub mod growth;
@@ -24,8 +26,8 @@ pub mod measure;
 pub mod report;
 mod scans;
 
-use crate::error_kind::{ErrorKind, HasKind};
-use crate::numerics::krylov::euclidean_norm;
+use asperity::error_kind::{ErrorKind, HasKind};
+use asperity::numerics::krylov::euclidean_norm;
 use measure::{Effort, Measured, measure};
 use serde::Serialize;
 use std::error::Error;

@@ -2,11 +2,11 @@
 
 use super::half_space::SPEED;
 use super::{Case, Failure, Method, Prepared, Reference};
-use crate::fem::profile::RigidProfile;
-use crate::fem::steady::{BlockOptions, SteadyContact};
-use crate::fem::transient::{TransientContact, TransientOptions};
-use crate::rubber::{Rheology, Rubber};
-use crate::surface::Wave;
+use asperity::fem::profile::RigidProfile;
+use asperity::fem::steady::{BlockOptions, SteadyContact};
+use asperity::fem::transient::{TransientContact, TransientOptions};
+use asperity::rubber::{Rheology, Rubber};
+use asperity::surface::Wave;
 
 pub(super) const COLUMNS: &str = "columns";
 
