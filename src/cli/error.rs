@@ -43,7 +43,7 @@ impl CliError {
         }
     }
 
-    /// A folder that cannot be made: bad input where something else is in the way.
+    /// A folder that cannot be made: bad input if a file has its name.
     pub fn no_folder(path: &Path, error: &io::Error) -> Self {
         let path = path.display();
         match error.kind() {

@@ -56,7 +56,7 @@ pub(super) struct Export {
     /// Run folder.
     run: PathBuf,
     /// Format: csv and markdown and latex in the layout of the published tables, parquet as one
-    /// long table, xlsx as a workbook with a sheet for each, svg as a figure with the 95 % confidence band.
+    /// long table, xlsx as a workbook with a sheet for each, svg as the figure of `asperity plot friction`.
     #[arg(long, value_enum)]
     format: Format,
     /// The computed tables beside the published ones that the recipe names, as a Markdown document.
@@ -166,8 +166,7 @@ impl Export {
             && self.speed.is_none_or(|speed| speed == row.speed_mm_s)
     }
 
-    /// Says what of a result is not that of the recipe any more. Tables that are not there are an
-    /// error of their own.
+    /// Warns if a result is not what its recipe asks for any more. Missing tables are reported elsewhere.
     fn warn_of_doubt(&self, stage: &str, quiet: bool) {
         let there = self.run.join(stage).exists();
         let last_run = LastRun::read(&self.run, quiet).filter(|_| there && !quiet);
@@ -235,7 +234,7 @@ impl Export {
         self.text(&comparison_markdown(note, &compared, &corrections))
     }
 
-    /// Refuses a file that is named as one of another format.
+    /// Refuses a file name with the extension of another format.
     fn check_name(&self) -> Result<(), CliError> {
         let Some(path) = &self.to else { return Ok(()) };
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -310,7 +309,7 @@ impl Export {
 fn all_tables(view: &RunView) -> Vec<String> {
     let mut tables = Vec::new();
     for stage in Stage::ALL.into_iter() {
-        // One stage with a damaged manifest leaves those of the others.
+        // A damaged manifest hides the tables of its own stage alone.
         let manifest = view.stage_manifest(stage.name()).ok().flatten();
         let outputs = manifest.into_iter().flat_map(|manifest| manifest.outputs);
         let names =

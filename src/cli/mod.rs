@@ -33,7 +33,7 @@ pub use error::CliError;
 use clap::{Parser, Subcommand};
 
 const EXIT_CODES: &str = "\
-Exit codes of every command: 0 success, 1 a computation failed or its result could not be written, 2 something that was given cannot be used, \
+Exit codes of every command: 0 success, 1 a computation failed or its result could not be written, 2 an option, a recipe or a file cannot be used, \
 130 interrupted.";
 
 /// Hysteretic rubber friction on asphalt: profilometer scans in, friction tables with error bars
@@ -60,7 +60,7 @@ enum Command {
     Export(export::Export),
     Report(report::Report),
     Plot(plot::Plot),
-    /// Solve a single contact problem, without any recipe.
+    /// Solve a single contact problem, without a recipe.
     #[command(subcommand)]
     Solve(solve::Solve),
     /// Make a rubber from measured moduli.

@@ -31,7 +31,7 @@ pub(super) struct Plot {
     /// File to write, .svg or .png; SVG on standard output if not given.
     #[arg(long, value_name = "FILE")]
     to: Option<PathBuf>,
-    /// Say which figures there are.
+    /// List the figures.
     #[arg(long, conflicts_with_all = ["figure", "run", "to"])]
     list: bool,
     /// Overwrite a file that is there already.

@@ -90,7 +90,7 @@ pub(super) struct Fit {
     /// Poisson ratio of the rubber, 0 to 0.5; also makes Young's modulus of shear: E = 2 (1 + nu) G.
     #[arg(long, value_name = "NU", default_value = "0.49", value_parser = values::finite, allow_negative_numbers = true)]
     poisson_ratio: f64,
-    /// Number of terms [default: the one with the least criterion of Schwarz].
+    /// Number of terms [default: the one with the lowest Bayesian information criterion (Schwarz)].
     #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     terms: Option<usize>,
     /// Reference temperature in °C, one of those measured [default: the middle one].
@@ -111,7 +111,7 @@ pub(super) struct Fit {
     /// Where the columns are, by number or by name: frequency_hz=1,storage_mpa=2,loss_mpa=3.
     #[arg(long, value_name = "QUANTITY=COLUMN", value_delimiter = ',')]
     columns: Vec<DescribedColumn>,
-    /// What stands between the columns of a text [default: found from the content].
+    /// Separator of the columns of a text [default: found from the content].
     #[arg(long, value_enum, value_name = "WHAT")]
     separator: Option<TextSeparator>,
     /// Decimal mark, `.` or `,` [default: found from the content].
@@ -225,7 +225,7 @@ impl Fit {
         })
     }
 
-    /// Tells how the file was read, where its header is not this program's, and what looks wrong.
+    /// Prints how the file was read, if its header is not in the form of this program, and what looks wrong.
     fn tell(&self, table: &SweepTable, doubts: &[String], quiet: bool) {
         let name = file_name(&self.sweep);
         if table.interpreted {
@@ -237,7 +237,7 @@ impl Fit {
         }
     }
 
-    /// What is wrong before anything is read or written.
+    /// Checks the options before anything is read or written.
     fn check(&self) -> Result<(), CliError> {
         if !(0.0..=0.5).contains(&self.poisson_ratio) {
             let ratio = self.poisson_ratio;

@@ -204,8 +204,7 @@ impl Synth {
     }
 }
 
-/// Number of scans in the folder that were not written now; they would be taken for the same
-/// specimen.
+/// Number of other scans in the folder, which a recipe would take for scans of the same specimen.
 fn other_scans(folder: &Path, written: &[OsString]) -> std::io::Result<usize> {
     let other = |name: &OsString| {
         let text = name.to_string_lossy();

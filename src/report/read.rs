@@ -41,7 +41,7 @@ impl HasKind for ReportError {
     }
 }
 
-/// The rows of a table, or none if the run has no such result.
+/// The rows of a table, or `None` if the run has no such result.
 pub(super) fn rows<R: Row>(
     run: &RunView,
     stage: &str,
@@ -50,7 +50,7 @@ pub(super) fn rows<R: Row>(
     Ok(table(run, stage, file)?.map(|(rows, _)| rows))
 }
 
-/// The rows of a table and its metadata, or none if the run has no such result.
+/// The rows of a table and its metadata, or `None` if the run has no such result.
 pub(super) fn table<R: Row>(
     run: &RunView,
     stage: &str,

@@ -87,7 +87,7 @@ impl FrictionTable {
         format!("friction_{}_{}_waves_{}_mm_s", self.model, self.waves, self.speed_mm_s)
     }
 
-    /// What the averages rest on.
+    /// Number of realisations in the averages, in words.
     fn basis(&self) -> String {
         let realisations = self.realisations();
         match self.rows.first().and_then(|row| row.half_space_realisations) {

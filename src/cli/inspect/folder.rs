@@ -49,7 +49,7 @@ pub(super) fn read(path: &Path) -> Result<Finding, CliError> {
     let entries: Vec<_> = entries.collect::<Result<_, _>>().map_err(unreadable)?;
     let mut folders: Vec<PathBuf> = entries
         .into_iter()
-        // What a killed run left behind starts with a point.
+        // Names of what a killed run left behind start with a point.
         .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
         .map(|entry| entry.path())
         .filter(|path| path.join(Manifest::FILE).exists())

@@ -14,7 +14,7 @@ pub(super) struct InstrumentFile {
     #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: String,
-    /// How the format was told.
+    /// How the format was recognised.
     detected: String,
     /// Of a profile.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -30,7 +30,7 @@ pub(in crate::cli) struct ScanOptions {
     /// Sheet of a workbook (.xlsx), by name or number (the first is 1); the first if not given.
     #[arg(long, value_name = "SHEET", value_parser = values::column)]
     sheet: Option<Column>,
-    /// Between the cells: tab, comma, semicolon, whitespace or one character.
+    /// Separator of the cells: tab, comma, semicolon, whitespace or one character.
     #[arg(long, value_parser = values::separator)]
     separator: Option<Separator>,
     /// Column of the positions, by name or number (the first is 1).
@@ -39,7 +39,7 @@ pub(in crate::cli) struct ScanOptions {
     /// Unit of the positions: nm, um, mm or m.
     #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
     x_unit: Option<LengthUnit>,
-    /// Distance of neighbouring points in um, for a file of heights only, in place of --x-column.
+    /// Distance of neighbouring points in um, for a file of heights only, instead of --x-column.
     #[arg(long, value_name = "UM", value_parser = values::positive, allow_negative_numbers = true)]
     x_spacing_um: Option<f64>,
     /// Column of the positions across the lines of a height map, by name or number (the first is 1).
@@ -57,7 +57,7 @@ pub(in crate::cli) struct ScanOptions {
     /// The file holds depths, which grow away from the rubber.
     #[arg(long)]
     invert_z: bool,
-    /// No line of column names stands before the first point.
+    /// There is no line of column names before the first point.
     #[arg(long)]
     no_header: bool,
     /// Decimal mark, `.` or `,`.
@@ -126,7 +126,7 @@ impl ScanOptions {
         !self.given().is_empty()
     }
 
-    /// Refuses options for the file at `path`, which is no text but `what`.
+    /// Refuses options of texts for the file at `path`, which is `what`.
     ///
     /// # Errors
     /// [`CliError::Input`] that names them.
@@ -136,11 +136,13 @@ impl ScanOptions {
             return Ok(());
         }
         let turn = match self.invert_z {
-            true => "; a recipe turns files of instruments by ingest.invert_instrument_heights",
+            true => {
+                "; in a recipe, ingest.invert_instrument_heights turns the heights of instrument files"
+            }
             false => "",
         };
         let given = given.join(", ");
-        let problem = format!("is {what}, no text: leave out {given}{turn}");
+        let problem = format!("is {what}, not text: leave out {given}{turn}");
         Err(foreign(path, &problem))
     }
 
@@ -151,7 +153,7 @@ impl ScanOptions {
     pub(in crate::cli) fn read(&self, path: &Path) -> Result<Described, CliError> {
         let format = self.format().map_err(|needed| {
             let problem = format!(
-                "is no artifact but text; to read it as a scan, give {needed} as well (units are never \
+                "is text, not an artifact; to read it as a scan, give {needed} as well (units are never \
                  guessed); without options, inspect tells what it looks like"
             );
             foreign(path, &problem)
@@ -159,7 +161,7 @@ impl ScanOptions {
         Ok(read_described(path, &format)?)
     }
 
-    /// What was read, and where the options contradict the names of the columns.
+    /// The scan, and contradictions between the options and the names of the columns.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -167,7 +169,7 @@ impl ScanOptions {
         Ok(Scan { contradictions: self.contradictions(path)?, ..Scan::of(path, scan) })
     }
 
-    /// Where the options contradict the names of the columns.
+    /// Contradictions between the options and the names of the columns.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -186,7 +188,7 @@ impl ScanOptions {
     }
 
     /// # Errors
-    /// The options that are needed and not given.
+    /// The required options that are not given.
     pub(in crate::cli) fn format(&self) -> Result<TextFormat, String> {
         let spaced = self.x_spacing_um.is_some();
         let needed: Vec<&str> = [
@@ -253,9 +255,9 @@ pub(super) struct Scan {
     mean_um: f64,
     /// Root of the mean square about the mean, before form and tilt are removed.
     rms_um: f64,
-    /// Points at the position of the point before.
+    /// Number of points at the position of the point before.
     repeated: usize,
-    /// Where the options contradict the names of the columns.
+    /// Contradictions between the options and the names of the columns.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     contradictions: Vec<String>,
     /// x in mm and z in um; absent where missing.
@@ -263,7 +265,7 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    /// The readers give two points or more and at least one height.
+    /// The readers return two points or more and at least one height.
     pub(super) fn of(path: &Path, scan: RawScan) -> Self {
         let (merged, repeated) = merge_repeated(&scan);
         let fitted = place_on_grid(&merged).ok().map(|(grid, _)| grid.spacing);
@@ -290,7 +292,7 @@ impl Scan {
             smallest_spacing_um,
             largest_spacing_um,
             median_spacing_um,
-            // Positions that make no grid have no line through them.
+            // Repeated positions may leave no line through them.
             spacing_m: fitted.unwrap_or(median_spacing_um / 1e6),
             mean_m: mean_um / 1e6,
             std_m: rms_um / 1e6,

@@ -20,16 +20,17 @@ use asperity::contact::sliding::POINTS_RANGE;
 use asperity::contact::{ContactError, ContactSolution, SlidingContact};
 use asperity::rubber::Rubber;
 
-/// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
+/// Relative tolerance of the contact area of --area: far below what any grid resolves, at the cost of a solve
+/// or two.
 const AREA_TOLERANCE: f64 = 1e-6;
 
-/// Points on a contact spot below which area and friction are those of the grid: of one sine they
-/// are then off by a fifth and more.
+/// Fewest points on a contact spot for reliable area and friction: with fewer, those of one sine are off by a
+/// fifth and more.
 const RESOLVED_SPOT: f64 = 4.0;
 
-/// Accuracy of friction without --tolerance.
+/// Default of --tolerance.
 const DEFAULT_TOLERANCE: f64 = 1e-3;
-/// Of the coarsest grid; three grids make an estimate.
+/// Points of the coarsest grid; an estimate takes three grids.
 const FIRST_POINTS_PER_WAVE: usize = 8;
 /// Seconds for a contact.
 const MOST_POINTS: usize = 1 << 22;
@@ -54,7 +55,7 @@ Exit codes: 0 solved, 1 not converged or not written, 2 bad input.";
 /// Solve the steady sliding contact of a rubber half-space with a periodic profile.
 ///
 /// The profile is a sum of sines (--wave) or a file (--profile). The rubber slides over it at
-/// --speed, pressed on with the mean --pressure, or as strongly as gives the contact --area.
+/// --speed under the mean --pressure, or under the pressure that gives the contact area --area.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 #[command(group(ArgGroup::new("load").required(true).args(["pressure", "area"])))]
@@ -67,7 +68,7 @@ pub(in crate::cli) struct Bem {
     /// Mean pressure in MPa.
     #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
     pressure: Option<f64>,
-    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure. Where the grid has
+    /// Contact area as a fraction of the nominal area, between 0 and 1, instead of --pressure. If the grid has
     /// no such area, the nearest one is taken if it is within its own estimated error.
     #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
     area: Option<f64>,
@@ -130,7 +131,7 @@ impl Bem {
             note(
                 quiet,
                 format_args!(
-                    "warning: a contact spot is {} grid points wide on average, too few for reliable figures: give \
+                    "warning: a contact spot is {} grid points wide on average, too few for reliable numbers: give \
                      more points or more pressure",
                     significant(spot)
                 ),
@@ -151,7 +152,7 @@ impl Bem {
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
 
-    /// The contact, on a grid that is fine enough or on the given one.
+    /// The contact, on a sufficiently fine grid or on the given one.
     fn solve(&self, rubber: &Rubber, shape: &Shape) -> Result<Refined<ContactSolution>, CliError> {
         let solve = |points: usize| self.solve_on(rubber, shape, points);
         let given =
@@ -194,7 +195,7 @@ impl Bem {
         let mut contact = SlidingContact::new(rubber, self.speed / 1e3, shape.period, &heights)?;
         if self.area.is_some() && contact.height_range() == 0.0 {
             return Err(CliError::input(
-                "the profile is flat and touches everywhere at any pressure: give --pressure",
+                "the profile is flat and in full contact at any pressure: give --pressure",
             ));
         }
         match (self.pressure, self.area) {
@@ -212,8 +213,7 @@ impl Bem {
         }
     }
 
-    /// How far the contact area is from the one asked for, where the grid has none that is nearer. An area within
-    /// its own estimated error cannot be told from the one asked for.
+    /// Warns if the nearest contact area of the grid differs from the one asked for by more than its estimated error.
     fn distance_of_area(
         &self,
         refined: &Refined<ContactSolution>,
@@ -256,7 +256,7 @@ impl Summary {
         }
     }
 
-    /// Lengths or moduli far from any road overflow; what is no number is no result.
+    /// Refuses a result that is not finite: lengths or moduli far from those of any road overflow.
     fn check(&self) -> Result<(), CliError> {
         let results = [
             self.friction_coefficient,
@@ -293,7 +293,7 @@ impl Summary {
     }
 }
 
-/// The refusal of a contact area that the grid does not have.
+/// The error for a contact area that the grid does not have.
 fn not_reached(wanted: f64, nearest: &ContactSolution) -> CliError {
     CliError::from(ContactError::AreaNotReached {
         wanted,

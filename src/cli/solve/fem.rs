@@ -25,9 +25,9 @@ use asperity::fem::steady::{BlockOptions, SteadyContact};
 use asperity::fem::transient::{FlowRule, TransientContact, TransientOptions};
 use asperity::rubber::{Rheology, Rubber};
 
-/// Relative to the wanted fraction; below what a mesh resolves.
+/// Relative tolerance of the contact area of --area; below what a mesh resolves.
 const AREA_TOLERANCE: f64 = 1e-4;
-/// Periods of a drag without --drag-periods, those of the thesis.
+/// Default of --drag-periods, that of the thesis.
 const DEFAULT_DRAG_PERIODS: usize = 12;
 
 const EXAMPLES: &str = "\
@@ -59,7 +59,7 @@ pub(in crate::cli) struct Fem {
     /// Mean pressure in MPa.
     #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
     pressure: Option<f64>,
-    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure;
+    /// Contact area as a fraction of the nominal area, between 0 and 1, instead of --pressure;
     /// steady route only.
     #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
     area: Option<f64>,
@@ -166,12 +166,12 @@ impl Fem {
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
 
-    /// Options that contradict each other, before anything is computed.
+    /// Refuses options that contradict each other.
     fn check(&self) -> Result<(), CliError> {
         let transient = self.route == Route::Transient;
         if self.shape.points.is_some() && self.shape.profile.is_none() {
             return Err(CliError::input(
-                "--points is the grid of solve bem: give --columns, the sines are used as they are",
+                "--points is the grid of solve bem: give --columns; sines need no grid here",
             ));
         }
         if transient && self.area.is_some() {
@@ -196,7 +196,7 @@ impl Fem {
         ] {
             if given && !transient {
                 return Err(CliError::input(format!(
-                    "{option} needs --route transient: the steady field has no time"
+                    "{option} needs --route transient: the steady route has no time steps"
                 )));
             }
         }
@@ -212,7 +212,7 @@ impl Fem {
         refuse_existing(self.series.as_deref(), self.force)
     }
 
-    /// The block of the options, on the usual number of columns if none is given.
+    /// The block of the options, with the default number of columns if none is given.
     fn block(&self, profile: &RigidProfile) -> Result<BlockOptions, CliError> {
         let columns = match (self.columns, self.route) {
             (Some(columns), _) => columns,
@@ -352,7 +352,7 @@ impl Fem {
     }
 }
 
-/// The error with the options that may help.
+/// The error with a hint at options that may help.
 fn with_advice(of: &str, error: FemError) -> CliError {
     let advice = match &error {
         FemError::Rubber(_) | FemError::OutOfRange { .. } | FemError::Interrupted => "",

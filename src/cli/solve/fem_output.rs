@@ -17,19 +17,19 @@ pub(super) struct Summary {
     contact_area_fraction: f64,
     mean_separation_mm: f64,
     pressure_mpa: f64,
-    /// None for the transient route, whose time steps have one each.
+    /// `None` for the transient route, where each time step has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     residual: Option<f64>,
     iterations: usize,
     grid_points: usize,
     seconds: f64,
     rows: usize,
-    /// Friction from the heat of the branches (steady), or from the work less the stored energy.
+    /// Friction from the heat of the branches (steady), or from the work minus the stored energy.
     hysteretic_friction: f64,
     /// Largest less smallest friction of the averaged periods; transient route only.
     #[serde(skip_serializing_if = "Option::is_none")]
     friction_oscillation: Option<f64>,
-    /// None where coarser meshes do not resolve the contact, and for the transient route.
+    /// `None` if coarser meshes do not resolve the contact, and for the transient route.
     error_estimate: Option<ErrorEstimate>,
 }
 

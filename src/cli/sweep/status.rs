@@ -12,7 +12,7 @@ Examples:
   How far the shards are:
     asperity sweep status $PLAN";
 
-/// Tell how many tasks of each shard are solved.
+/// Show how many tasks of each shard are solved.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Status {

@@ -40,7 +40,7 @@ const AMPLITUDE: f64 = 0.005e-3;
 const PRESSURE: f64 = 5e5;
 /// Shear of the mesh that keeps its elements upright, about half of that of the block.
 const SKEW: f64 = -0.03;
-/// Six periods, the last two averaged, in place of the twelve of the thesis: half the time, and
+/// Six periods, the last two averaged, instead of the twelve of the thesis: half the time, and
 /// friction changes by less than the error of the meshes.
 const DRAG_PERIODS: usize = 6;
 const AVERAGED_PERIODS: usize = 2;

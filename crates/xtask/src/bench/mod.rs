@@ -32,7 +32,7 @@ use measure::{Effort, Measured, measure};
 use serde::Serialize;
 use std::error::Error;
 
-/// What a solver or the machine has to complain about.
+/// An error of a solver or of the operating system.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
 /// A solver that is ready to be timed: from its set-up to its result.
@@ -127,7 +127,7 @@ pub struct CaseResult {
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
-    /// A name that is no case.
+    /// There is no case of that name.
     #[error("there is no case {name}: choose from {}", known.join(", "))]
     UnknownCase {
         /// The name that was asked for.

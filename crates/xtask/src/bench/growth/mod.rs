@@ -45,7 +45,7 @@ pub struct Row {
     pub sample: Sample,
 }
 
-/// Why there are no figures.
+/// Why there are no results.
 #[derive(Debug, thiserror::Error)]
 pub enum GrowthError {
     /// The process of a job could not be started.
@@ -67,7 +67,7 @@ pub enum GrowthError {
         message: String,
     },
     /// A text that names no job.
-    #[error("{text} is no job: points:N, waves:N or campaign:REALISATIONS:THREADS")]
+    #[error("{text} is not a job: points:N, waves:N or campaign:REALISATIONS:THREADS")]
     NoJob {
         /// The text.
         text: String,
