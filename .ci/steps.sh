@@ -83,12 +83,20 @@ tests() {
     ) | tee "$scratch/quick.tests"
 }
 
+# The tests of `cargo xtask`, which is no default member.
+xtask_tests() {
+    (
+        timed
+        cargo test --release --locked --package xtask
+    ) | tee "$scratch/xtask.tests"
+}
+
 # The tests that are too slow for every change.
 slow_tests() {
     (
         timed
         # Some ignored tests write the bundled data anew.
-        cargo test --release -- --ignored --skip rewrite --skip the_full_product
+        cargo test --release --workspace -- --ignored --skip rewrite --skip the_full_product
     ) | tee "$scratch/slow.tests"
 }
 

@@ -3,12 +3,13 @@
 //!
 //!     cargo run --release --example stage_results RUN OUT.arrow
 
-use asperity::artifact::{Metadata, Row, RunView, data_frame, write_table};
+use asperity::artifact::{Metadata, Row, RunView, write_table};
 use asperity::stages::tables::{FRICTION, Model};
-use polars::prelude::SortMultipleOptions;
+use polars::prelude::{IpcReader, SerReader, SortMultipleOptions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::error::Error;
+use std::fs::File;
 use std::path::Path;
 
 /// Frictional heat at one contact area.
@@ -56,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     write_table(Path::new(out), &heat, &Metadata::new())?;
     let hottest = SortMultipleOptions::default().with_order_descending(true);
-    let frame = data_frame(Path::new(out))?.sort(["heat_kw_m2"], hottest)?;
+    let frame = IpcReader::new(File::open(out)?).finish()?.sort(["heat_kw_m2"], hottest)?;
     println!("{}", frame.head(Some(5)));
     Ok(())
 }

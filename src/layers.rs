@@ -18,8 +18,6 @@ const PROGRAM: &[&str] = &[
     "sweep",
     "schemas",
     "forecast",
-    "bench",
-    "cli",
 ];
 
 /// Modules of the mechanics, the lowest first.
@@ -37,8 +35,16 @@ const MECHANICS: &[&str] = &[
 
 /// Every Rust file of a top module: `NAME.rs` and all in `NAME/`.
 fn files_of(source: &Path, module: &str) -> Vec<PathBuf> {
-    let mut folders = vec![source.join(module)];
-    let mut files: Vec<PathBuf> = vec![source.join(format!("{module}.rs"))];
+    let file = source.join(format!("{module}.rs"));
+    let mut files = files_below(&source.join(module));
+    files.extend(Some(file).filter(|file| file.is_file()));
+    files
+}
+
+/// Every Rust file of a folder and those in it.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut folders = vec![folder.to_owned()];
+    let mut files = vec![];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).into_iter().flatten() {
             let path = entry.unwrap().path();
@@ -49,7 +55,6 @@ fn files_of(source: &Path, module: &str) -> Vec<PathBuf> {
             }
         }
     }
-    files.retain(|file| file.is_file());
     files
 }
 
@@ -76,7 +81,9 @@ fn upward(source: &Path, order: &[&str]) -> BTreeSet<String> {
             }
         }
     }
-    let known = |name: &str| order.contains(&name) || ["lib", "main", "layers"].contains(&name);
+    // The command line is a target of its own, which nothing can import.
+    let outside = ["lib", "main", "cli", "layers"];
+    let known = |name: &str| order.contains(&name) || outside.contains(&name);
     for entry in std::fs::read_dir(source).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
@@ -122,4 +129,49 @@ fn the_mechanics_use_nothing_of_one_operating_system() {
             assert!(!text.contains("std::os::"), "{}", file.display());
         }
     }
+}
+
+/// Figures look alike because one module draws them.
+#[test]
+fn only_the_plot_module_draws() {
+    let library = concat!("plot", "ters");
+    let folders = ["src", "crates", "tests", "benches", "examples"];
+    let files = folders.iter().flat_map(|folder| files_below(&project().join(folder)));
+    let (plot, others): (Vec<PathBuf>, Vec<PathBuf>) = files
+        .filter(|file| std::fs::read_to_string(file).unwrap().contains(library))
+        .partition(|file| file.starts_with(project().join("src/plot")));
+    assert!(!plot.is_empty());
+    assert_eq!(others, Vec::<PathBuf>::new());
+}
+
+/// Lines of code, without comments and what follows `#[cfg(test)]`.
+fn code(text: &str) -> impl Iterator<Item = &str> {
+    let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]"));
+    lines.filter(|line| !line.trim_start().starts_with("//"))
+}
+
+/// Whether a line multiplies or divides by a thousand or a million.
+fn changes_a_unit(line: &str) -> bool {
+    ["1e3", "1e6", "1e9"].iter().any(|power| {
+        line.match_indices(power).any(|(at, _)| {
+            let (before, after) = (&line[..at], &line[at + power.len()..]);
+            let whole = !after.starts_with(|c: char| c.is_alphanumeric() || c == '.');
+            whole && (before.ends_with("* ") || before.ends_with("/ ") || after.starts_with(" *"))
+        })
+    })
+}
+
+/// Another place would convert another way, and change the last bit.
+#[test]
+fn quantities_change_their_unit_in_one_place() {
+    let mut found = Vec::new();
+    for module in PROGRAM.iter().chain(&["cli"]).filter(|module| **module != "units") {
+        for file in files_of(&project().join("src"), module) {
+            let text = std::fs::read_to_string(&file).unwrap();
+            let lines = code(&text).filter(|line| changes_a_unit(line));
+            found.extend(lines.map(|line| format!("{}: {line}", file.display())));
+        }
+    }
+    assert_eq!(found, [""; 0]);
+    assert!(changes_a_unit("a / 1e6,") && changes_a_unit("1e3 * x") && !changes_a_unit("1e3..2.0"));
 }

@@ -40,6 +40,7 @@
 //! |---|---|
 //! | [`files`] (`crates/files`) | files that a user gives: read whole, or refused with what to do |
 //! | [`scans`] (`crates/scans`) | readers of instrument files and of measured sweeps: bytes in, numbers or error out |
+//! | [`text`] | names that come from files, made harmless where they are printed |
 //! | [`requirement`] | what the keys of a recipe must hold |
 //! | [`plot`] | figures as descriptions, drawn all alike |
 //! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
@@ -48,8 +49,10 @@
 //! | [`report`] | tables and figures for people |
 //! | [`pipeline`] | the one function that wires the stages |
 //! | [`sweep`] | the cases of a recipe, spread over many machines |
+//! | [`schemas`] | JSON schemas of the recipe and of every file that asperity writes |
+//! | [`forecast`] | models, grids, time and memory of a recipe before it runs |
 //!
-//! The rest (`cli`, `bench`, `forecast`, `schemas`) is the program, public for its own binary, tests and benchmarks.
+//! The command line is no part of the library: it is the binary, `src/main.rs` and `src/cli`.
 //!
 //! # Conventions
 //! SI in memory (m, Pa, s, rad); mm, MPa and mm/s at the edges only, always with the unit in the
@@ -64,11 +67,6 @@ pub use asperity_files as files;
 pub use asperity_scans as scans;
 
 pub mod artifact;
-#[doc(hidden)]
-pub mod bench;
-#[doc(hidden)]
-pub mod cli;
-#[doc(hidden)]
 pub mod forecast;
 #[cfg(test)]
 mod layers;
@@ -78,9 +76,8 @@ pub mod recipe;
 pub mod report;
 pub mod requirement;
 pub mod rubber;
-#[doc(hidden)]
 pub mod schemas;
 pub mod stages;
 pub mod sweep;
-mod text;
-mod units;
+pub mod text;
+pub mod units;

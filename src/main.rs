@@ -1,10 +1,12 @@
 //! The command `asperity`.
 
+mod cli;
+
 use std::io::Write;
 use std::process::ExitCode;
 
-use asperity::cli::Arguments;
 use clap::Parser;
+use cli::Arguments;
 
 fn main() -> ExitCode {
     match Arguments::parse().run() {

@@ -19,12 +19,12 @@ fn is_hidden(character: char) -> bool {
 
 /// Text of several lines with every hidden character written as `\u001b`, which JSON reads as the
 /// same character.
-pub(crate) fn visible(text: &str) -> Cow<'_, str> {
+pub fn visible(text: &str) -> Cow<'_, str> {
     replaced(text, is_hidden)
 }
 
 /// A name in one line: as [`visible`], line ends and tabulators too.
-pub(crate) fn visible_line(text: &str) -> Cow<'_, str> {
+pub fn visible_line(text: &str) -> Cow<'_, str> {
     replaced(text, |character| is_hidden(character) || character.is_control())
 }
 
@@ -44,7 +44,7 @@ fn replaced(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
 }
 
 /// A message that fits on a screen or two: its first and last part, and how much is left out.
-pub(crate) fn cut(text: &str) -> Cow<'_, str> {
+pub fn cut(text: &str) -> Cow<'_, str> {
     let count = text.chars().count();
     if count <= LONGEST_MESSAGE {
         return Cow::Borrowed(text);
@@ -56,7 +56,7 @@ pub(crate) fn cut(text: &str) -> Cow<'_, str> {
 }
 
 /// A name in Markdown, as text and as a cell of a table.
-pub(crate) fn markdown_text(text: &str) -> String {
+pub fn markdown_text(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in visible_line(text).chars() {
         match character {
@@ -76,7 +76,7 @@ pub(crate) fn markdown_text(text: &str) -> String {
 
 /// A name in LaTeX: one line, without characters that LaTeX or babel take for commands or that the
 /// default fonts print as others.
-pub(crate) fn latex_text(text: &str) -> String {
+pub fn latex_text(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in visible_line(text).chars() {
         match character {

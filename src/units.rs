@@ -6,13 +6,15 @@
 //! quantity is converted once, where it is read or written.
 
 /// A number as it stands in another unit.
-pub(crate) trait Units {
+pub trait Units {
     /// A length in m, in mm; a speed in m/s, in mm/s.
     fn m_to_mm(self) -> f64;
     /// A length in mm, in m; a speed in mm/s, in m/s.
     fn mm_to_m(self) -> f64;
     /// A length in m, in µm.
     fn m_to_um(self) -> f64;
+    /// A length in mm, in µm.
+    fn mm_to_um(self) -> f64;
     /// A length in µm, in m.
     fn um_to_m(self) -> f64;
     /// A pressure or a modulus in Pa, in MPa.
@@ -46,6 +48,10 @@ impl Units for f64 {
 
     fn m_to_um(self) -> f64 {
         self * 1e6
+    }
+
+    fn mm_to_um(self) -> f64 {
+        self * 1e3
     }
 
     fn um_to_m(self) -> f64 {

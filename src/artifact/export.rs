@@ -8,17 +8,19 @@ use std::sync::Arc;
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int64Type, UInt32Type, UInt64Type};
 use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, StringArray, UInt32Array};
+use arrow_schema::{ArrowError, SchemaRef};
 use parquet::arrow::ArrowWriter;
 use parquet::errors::ParquetError;
 use serde_json::{Map, Value};
 
-use super::columns::ColumnType;
-use super::table::{FORMAT, TableFile, read_bytes};
 use super::ArtifactError;
+use super::columns::ColumnType;
+use super::table::{TableFile, read_bytes};
 
 /// A table for other programs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Export {
+pub struct ExportTable {
+    schema: SchemaRef,
     batches: Vec<RecordBatch>,
 }
 
@@ -33,22 +35,21 @@ pub enum Values {
     Float(Vec<Option<f64>>),
 }
 
-impl Export {
+impl ExportTable {
     /// Any table of an artifact, after its content digest has been checked.
     ///
     /// # Errors
     /// Those of [`table_info`](super::table_info).
     pub fn read(path: &Path) -> Result<Self, ArtifactError> {
-        Ok(Self { batches: TableFile::decode(path, read_bytes(path)?)?.batches })
+        let TableFile { schema, batches, .. } = TableFile::decode(path, read_bytes(path)?)?;
+        Ok(Self { schema, batches })
     }
 
     /// A table of named columns that all have one length.
     ///
     /// # Errors
     /// [`ArtifactError::NotRepresentable`] for columns of different lengths.
-    pub fn new(
-        columns: impl IntoIterator<Item = (String, Values)>,
-    ) -> Result<Self, ArtifactError> {
+    pub fn new(columns: impl IntoIterator<Item = (String, Values)>) -> Result<Self, ArtifactError> {
         let array = |values: Values| -> ArrayRef {
             match values {
                 Values::Text(names) => Arc::new(StringArray::from(names)),
@@ -59,14 +60,12 @@ impl Export {
         let columns = columns.into_iter().map(|(name, values)| (name, array(values)));
         let batch = RecordBatch::try_from_iter(columns)
             .map_err(|error| not_representable("Arrow", error.to_string()))?;
-        Ok(Self { batches: vec![batch] })
+        Ok(Self { schema: batch.schema(), batches: vec![batch] })
     }
 
     /// Names of the columns.
     pub fn names(&self) -> Vec<String> {
-        let schema = self.batches.first().map(RecordBatch::schema);
-        let fields = schema.iter().flat_map(|schema| schema.fields().iter());
-        fields.map(|field| field.name().clone()).collect()
+        self.schema.fields().iter().map(|field| field.name().clone()).collect()
     }
 
     /// The same without some columns.
@@ -77,11 +76,11 @@ impl Export {
         let names = self.names();
         let kept = (0..names.len()).filter(|index| !columns.contains(&names[*index].as_str()));
         let kept: Vec<usize> = kept.collect();
+        let failed = |error: ArrowError| not_representable("Arrow", error.to_string());
+        let schema = Arc::new(self.schema.project(&kept).map_err(failed)?);
         let batches = self.batches.iter().map(|batch| batch.project(&kept));
-        let batches = batches
-            .collect::<Result<_, _>>()
-            .map_err(|error| not_representable("Arrow", error.to_string()))?;
-        Ok(Self { batches })
+        let batches = batches.collect::<Result<_, _>>().map_err(failed)?;
+        Ok(Self { schema, batches })
     }
 
     /// The first rows as JSON objects, for a look at it.
@@ -122,14 +121,12 @@ impl Export {
     /// As Parquet, with types and units.
     ///
     /// # Errors
-    /// [`ArtifactError::NotRepresentable`] if there are no columns.
+    /// [`ArtifactError::NotRepresentable`] for a type that Parquet does not have.
     pub fn parquet(&self) -> Result<Vec<u8>, ArtifactError> {
         let failed = |error: ParquetError| not_representable("Parquet", error.to_string());
-        let Some(first) = self.batches.first() else {
-            return Err(not_representable("Parquet", "it has no columns".into()));
-        };
         let mut bytes = Vec::new();
-        let mut writer = ArrowWriter::try_new(&mut bytes, first.schema(), None).map_err(failed)?;
+        let mut writer =
+            ArrowWriter::try_new(&mut bytes, self.schema.clone(), None).map_err(failed)?;
         for batch in &self.batches {
             writer.write(batch).map_err(failed)?;
         }
@@ -210,12 +207,11 @@ mod tests {
     fn names_are_no_formulas_and_numbers_stay_numbers() {
         let names = ["=cmd|' /C calc'!A0", "@x", "tread", "a=b", ""].map(str::to_owned);
         let numbers = vec![Some(-1.5), Some(2.0), None, Some(1e-5), Some(1e300)];
-        let columns =
-            [("name", Values::Text(names.to_vec())), ("number", Values::Float(numbers))];
-        let table = Export::new(columns.map(|(name, values)| (name.to_owned(), values))).unwrap();
+        let columns = [("name", Values::Text(names.to_vec())), ("number", Values::Float(numbers))];
+        let table =
+            ExportTable::new(columns.map(|(name, values)| (name.to_owned(), values))).unwrap();
         let text = String::from_utf8(table.csv().unwrap()).unwrap();
-        let expected =
-            "name,number\n'=cmd|' /C calc'!A0,-1.5\n'@x,2.0\ntread,\na=b,1e-5\n,1e300\n";
+        let expected = "name,number\n'=cmd|' /C calc'!A0,-1.5\n'@x,2.0\ntread,\na=b,1e-5\n,1e300\n";
         assert_eq!(text, expected);
         assert_eq!(table.without(&["name"]).unwrap().names(), ["number"]);
         assert_eq!(table.first_rows(1).unwrap()[0]["number"], -1.5);
@@ -224,6 +220,6 @@ mod tests {
     #[test]
     fn columns_of_different_lengths_are_no_table() {
         let columns = [2, 3].map(|count| ("a".to_owned(), Values::Float(vec![None; count])));
-        assert!(Export::new(columns).unwrap_err().to_string().contains("the table as Arrow"));
+        assert!(ExportTable::new(columns).unwrap_err().to_string().contains("the table as Arrow"));
     }
 }

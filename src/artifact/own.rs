@@ -26,9 +26,9 @@ pub const SURFACES_FOLDER: &str = "surfaces";
 /// Folder of the cases in that of a sweep.
 pub const CASES_FOLDER: &str = "cases";
 /// The note of the last run, beside the folders of the stages.
-pub(crate) const NOTE_FILE: &str = "last_run.json";
-/// How the note of the last run begins, by which it is known as asperity's.
-pub(crate) const NOTE_HEAD: &str = "{\n  \"schema\": \"asperity.last_run\",\n";
+pub const NOTE_FILE: &str = "last_run.json";
+/// First bytes of the note of the last run, by which it is recognised.
+pub const NOTE_HEAD: &str = "{\n  \"schema\": \"asperity.last_run\",\n";
 
 /// How the names of all that is temporary begin.
 const PREFIX: &str = ".asperity-";
@@ -276,12 +276,11 @@ fn listed_by_journal(folder: &Path) -> BTreeSet<OsString> {
     }
 }
 
-/// Writes the note of the last run in a folder of its own and moves it into place, so that it is there whole or as it
-/// was.
+/// Writes the note of the last run into a run folder, in one step: after a crash the note is the old or the new one.
 ///
 /// # Errors
 /// [`ArtifactError::Io`].
-pub(crate) fn write_note(run: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
+pub fn write_note(run: &Path, bytes: &[u8]) -> Result<(), ArtifactError> {
     let folder = new_folder(run, "note")?;
     let begun = folder.join(NOTE_FILE);
     let write = || -> Result<(), ArtifactError> {
@@ -376,11 +375,11 @@ fn is_temporary_of_solve(name: &OsStr) -> bool {
     key.is_some_and(|(key, _)| key.parse::<super::Digest>().is_ok())
 }
 
-/// A temporary file beside the place that it is renamed to, with the usual permissions.
+/// Creates a temporary file in the folder of `path`, to be renamed to `path`, with the usual permissions.
 ///
 /// # Errors
 /// Those of the operating system.
-pub(crate) fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+pub fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
     let name = path.file_name().unwrap_or_default();
     let mut prefix = OsString::from(PREFIX);
     if name.len() <= LONGEST_NAME {

@@ -13,7 +13,7 @@ use arrow_array::types::Float64Type;
 use arrow_array::{Float64Array, RecordBatch};
 use arrow_ipc::reader::FileReader;
 use arrow_ipc::writer::FileWriter;
-use arrow_schema::{ArrowError, FieldRef, Schema};
+use arrow_schema::{ArrowError, FieldRef, Schema, SchemaRef};
 use serde::Serialize;
 
 use super::columns::table_description;
@@ -123,7 +123,7 @@ pub(super) fn decode_rows<R: Row>(
     path: &Path,
     bytes: Vec<u8>,
 ) -> Result<(Vec<R>, Metadata), ArtifactError> {
-    let TableFile { info, batches } = TableFile::decode(path, bytes)?;
+    let TableFile { info, batches, .. } = TableFile::decode(path, bytes)?;
     ArtifactError::check_schema(path, (&info.schema, info.version), (R::SCHEMA, R::VERSION))?;
     let wrong_columns = |reason: String| ArtifactError::WrongColumns {
         path: path.to_path_buf(),
@@ -145,6 +145,8 @@ pub(super) fn decode_rows<R: Row>(
 /// A decoded file whose content digest has been checked.
 pub(super) struct TableFile {
     pub(super) info: TableInfo,
+    pub(super) schema: SchemaRef,
+    /// None if there are no rows.
     pub(super) batches: Vec<RecordBatch>,
 }
 
@@ -192,7 +194,7 @@ impl TableFile {
             columns,
             metadata,
         };
-        Ok(Self { info, batches })
+        Ok(Self { info, schema, batches })
     }
 }
 

@@ -1,5 +1,6 @@
 //! `asperity convert`: scans from one format to another.
 
+use asperity::units::Units;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -9,12 +10,12 @@ use super::CliError;
 use super::inspect::{ScanOptions, read_instrument};
 use super::output::{note, print, refuse_existing, write_file};
 use super::solve::refuse_to_overwrite;
-use crate::scans::Described;
-use crate::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
-use crate::surface::RawScan;
+use asperity::scans::Described;
+use asperity::scans::file::{Grid, ScanFile, write_sdf, write_x3p};
+use asperity::surface::RawScan;
 
-/// Positions that are further than this share of the spacing from equal spacing are information
-/// that X3P and SDF have no place for.
+/// Largest deviation of positions from equal spacing, as a share of the spacing, that may be lost: X3P and
+/// SDF store the spacing alone.
 const LARGEST_JITTER: f64 = 0.1;
 
 const EXAMPLES: &str = "\
@@ -92,13 +93,13 @@ impl Convert {
         }
         self.scan.format().map_err(|needed| {
             CliError::input(format!(
-                "{} is no instrument file; to read it as text, give {needed} as well",
+                "{} is not an instrument file; to read it as text, give {needed} as well",
                 self.file.display()
             ))
         })?;
         let read = self.scan.read(&self.file)?;
         for contradiction in self.scan.contradictions(&self.file)? {
-            note(quiet, format_args!("warning: {contradiction}; the options count"));
+            note(quiet, format_args!("warning: {contradiction}; the options are used"));
         }
         Ok(read)
     }
@@ -110,7 +111,7 @@ impl Convert {
         }
     }
 
-    /// What writes the CSV file.
+    /// The writer of the CSV file.
     fn csv(
         &self,
         quiet: bool,
@@ -134,11 +135,11 @@ fn equally_spaced(path: &Path, scan: RawScan) -> Result<ScanFile, CliError> {
     let largest = scan.positions.iter().enumerate().map(deviation).fold(0.0, f64::max);
     if largest > LARGEST_JITTER * spacing {
         return Err(CliError::input(format!(
-            "{}: a position is {:.3} um off equal spacing of {:.3} um, for which X3P and SDF have no place; \
+            "{}: a position is {:.3} um off equal spacing of {:.3} um, and X3P and SDF store the spacing alone; \
              convert it to .csv",
             path.display(),
-            largest * 1e6,
-            spacing * 1e6
+            largest.m_to_um(),
+            spacing.m_to_um()
         )));
     }
     Ok(ScanFile {

@@ -4,8 +4,8 @@ use std::error::Error;
 use std::io;
 use std::path::Path;
 
-use crate::error_kind::{ErrorKind, HasKind};
-use crate::text::{cut, visible};
+use asperity::error_kind::{ErrorKind, HasKind};
+use asperity::text::{cut, visible};
 
 type Cause = Box<dyn Error + Send + Sync>;
 
@@ -43,7 +43,7 @@ impl CliError {
         }
     }
 
-    /// A folder that cannot be made: bad input where something else is in the way.
+    /// A folder that cannot be made: bad input if a file has its name.
     pub fn no_folder(path: &Path, error: &io::Error) -> Self {
         let path = path.display();
         match error.kind() {
@@ -94,10 +94,10 @@ impl<E: HasKind + Send + Sync + 'static> From<E> for CliError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::ContactError;
-    use crate::pipeline::PipelineError;
-    use crate::scans::{FileError, FileProblem};
-    use crate::stages::{self, SolveError, StageError};
+    use asperity::contact::ContactError;
+    use asperity::pipeline::PipelineError;
+    use asperity::scans::{FileError, FileProblem};
+    use asperity::stages::{self, SolveError, StageError};
 
     #[derive(Debug, thiserror::Error)]
     #[error("{text}")]

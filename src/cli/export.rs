@@ -12,17 +12,15 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{note, print, refuse_existing, write_file};
 use super::run_folder;
-use crate::artifact::{
-    ArtifactError, RunView, csv_bytes, data_frame as data_frame_of, parquet_bytes,
-};
-use crate::report::{
-    About, FrictionTable, comparison_markdown, data_frame, friction_figure, friction_tables, latex,
+use asperity::artifact::{ArtifactError, ExportTable, RunView};
+use asperity::report::{
+    About, FrictionTable, comparison_markdown, friction_figure, friction_tables, latex, long_table,
     markdown, workbook,
 };
-use crate::stages::Stage;
-use crate::stages::ingest::{FAULTS, REPORT, WINDOWS, cleaning_markdown};
-use crate::stages::tables::{COMPARISON, CORRECTIONS, FRICTION, FrictionRow, Model, NOTE_KEY};
-use crate::sweep::STAGE;
+use asperity::stages::Stage;
+use asperity::stages::ingest::{FAULTS, REPORT, WINDOWS, cleaning_markdown};
+use asperity::stages::tables::{COMPARISON, CORRECTIONS, FRICTION, FrictionRow, Model, NOTE_KEY};
+use asperity::sweep::STAGE;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -53,7 +51,7 @@ pub(super) struct Export {
     /// Run folder.
     run: PathBuf,
     /// Format: csv and markdown and latex in the layout of the published tables, parquet as one
-    /// long table, xlsx as a workbook with a sheet for each, svg as a figure with the 95 % confidence band.
+    /// long table, xlsx as a workbook with a sheet for each, svg as the figure of `asperity plot friction`.
     #[arg(long, value_enum)]
     format: Format,
     /// The computed tables beside the published ones that the recipe names, as a Markdown document.
@@ -145,13 +143,12 @@ impl Export {
                 let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
                 write_file(path, self.force, |out| out.write_all(&bytes))
             }
-            Format::Svg => self.text(&friction_figure(&tables)?),
+            Format::Svg => self.text(&friction_figure(&rows).svg()?),
             Format::Parquet => {
                 let Some(path) = &self.to else {
                     return Err(CliError::input("Parquet is binary: give a file with --to"));
                 };
-                let mut frame = data_frame(&rows).map_err(CliError::failure)?;
-                self.bytes(path, parquet_bytes(&mut frame))
+                self.bytes(path, long_table(&rows)?.parquet())
             }
         }
     }
@@ -163,8 +160,7 @@ impl Export {
             && self.speed.is_none_or(|speed| speed == row.speed_mm_s)
     }
 
-    /// Says what of a result is not that of the recipe any more. Tables that are not there are an
-    /// error of their own.
+    /// Warns if a result is not what its recipe asks for any more. Missing tables are reported elsewhere.
     fn warn_of_doubt(&self, stage: &str, quiet: bool) {
         let there = self.run.join(stage).exists();
         let last_run = LastRun::read(&self.run, quiet).filter(|_| there && !quiet);
@@ -204,11 +200,11 @@ impl Export {
         view.verify(stage)?;
         self.warn_of_doubt(stage, quiet);
         let file = format!("{name}.arrow");
-        let mut frame = data_frame_of(&view.file(stage, &file))?;
+        let table = ExportTable::read(&view.file(stage, &file))?;
         match (self.format, &self.to) {
-            (Format::Csv, None) => print(&csv_text(&frame)?),
-            (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
-            (Format::Parquet, Some(path)) => self.bytes(path, parquet_bytes(&mut frame)),
+            (Format::Csv, None) => print(&csv_text(&table)?),
+            (Format::Csv, Some(path)) => self.bytes(path, table.csv()),
+            (Format::Parquet, Some(path)) => self.bytes(path, table.parquet()),
             (Format::Parquet, None) => {
                 Err(CliError::input("Parquet is binary: give a file with --to"))
             }
@@ -226,7 +222,7 @@ impl Export {
         self.text(&comparison_markdown(note, &compared, &corrections))
     }
 
-    /// Refuses a file that is named as one of another format.
+    /// Refuses a file name with the extension of another format.
     fn check_name(&self) -> Result<(), CliError> {
         let Some(path) = &self.to else { return Ok(()) };
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -272,7 +268,7 @@ impl Export {
                 tables.len()
             ))),
             (Some(path), [table]) if path.extension().is_some() => {
-                self.bytes(path, csv_bytes(&published(table)?))
+                self.bytes(path, published(table)?.csv())
             }
             (Some(folder), tables) => {
                 std::fs::create_dir_all(folder)
@@ -284,7 +280,7 @@ impl Export {
                     refuse_existing(Some(&path(table)), self.force)?;
                 }
                 for table in tables {
-                    self.bytes(&path(table), csv_bytes(&published(table)?))?;
+                    self.bytes(&path(table), published(table)?.csv())?;
                 }
                 Ok(())
             }
@@ -301,7 +297,7 @@ impl Export {
 fn all_tables(view: &RunView) -> Vec<String> {
     let mut tables = Vec::new();
     for stage in Stage::ALL.into_iter() {
-        // One stage with a damaged manifest leaves those of the others.
+        // A damaged manifest hides the tables of its own stage alone.
         let manifest = view.stage_manifest(stage.name()).ok().flatten();
         let outputs = manifest.into_iter().flat_map(|manifest| manifest.outputs);
         let names =
@@ -311,13 +307,12 @@ fn all_tables(view: &RunView) -> Vec<String> {
     tables
 }
 
-fn csv_text(frame: &polars::prelude::DataFrame) -> Result<String, CliError> {
-    String::from_utf8(csv_bytes(frame)?).map_err(CliError::failure)
+fn csv_text(table: &ExportTable) -> Result<String, CliError> {
+    String::from_utf8(table.csv()?).map_err(CliError::failure)
 }
 
 /// The table with the columns of the published ones and the interval.
-fn published(table: &FrictionTable) -> Result<polars::prelude::DataFrame, CliError> {
-    let frame = data_frame(&table.rows).map_err(CliError::failure)?;
+fn published(table: &FrictionTable) -> Result<ExportTable, CliError> {
     let mut other = vec![
         "model",
         "waves",
@@ -329,7 +324,5 @@ fn published(table: &FrictionTable) -> Result<polars::prelude::DataFrame, CliErr
     if table.rows.iter().all(|row| row.half_space_realisations.is_none()) {
         other.extend(["half_space_realisations", "model_error"]);
     }
-    let keep = frame.get_column_names().into_iter().filter(|name| !other.contains(&name.as_str()));
-    let keep: Vec<String> = keep.map(ToString::to_string).collect();
-    frame.select(keep).map_err(CliError::failure)
+    Ok(long_table(&table.rows)?.without(&other)?)
 }

@@ -5,15 +5,15 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use super::CliError;
-use crate::numerics;
+use asperity::numerics;
 
 /// Whether the user has pressed Ctrl-C, or SIGTERM has come, since the installation.
 #[derive(Debug, Clone)]
 pub(super) struct Interrupt(numerics::Interrupt);
 
 impl Interrupt {
-    /// Takes them over for the rest of the process; once for each process. The first signal asks for an end, the
-    /// second one ends the process at once, which leaves what a kill leaves.
+    /// Handles the signals for the rest of the process; may be called once. The first signal asks the computation to
+    /// stop, the second ends the process at once, like a kill.
     ///
     /// # Errors
     /// [`CliError::Failure`] if the operating system refuses.

@@ -1,5 +1,5 @@
-//! The recipe that a run folder was last brought up to date with, so that `export` can tell whether
-//! its results still are those of the recipe.
+//! The note of the last run: the recipe from which the results of a run folder were computed, so that
+//! `export` can tell whether they are up to date.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize};
 use super::CliError;
 use super::output::{json, note};
 use super::recipe_options::{with_scans, with_tolerance};
-use crate::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
-use crate::pipeline::{self, State};
-use crate::recipe::{Recipe, RecipeError};
-use crate::report::html::Origin;
-use crate::stages::Stage;
-use crate::sweep::slurm::shell_path;
+use asperity::artifact::{Digest, NOTE_FILE, NOTE_HEAD, RunView, TOOL_VERSION, write_note};
+use asperity::pipeline::{self, State};
+use asperity::recipe::{Recipe, RecipeError};
+use asperity::report::html::Origin;
+use asperity::stages::Stage;
+use asperity::sweep::slurm::shell_path;
 
 const SCHEMA: &str = "asperity.last_run";
 
@@ -24,19 +24,19 @@ pub(super) struct LastRun {
     /// Always [`SCHEMA`]; empty in notes of earlier versions.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     schema: String,
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     recipe: PathBuf,
     /// The recipe as seen from the run folder, which stays when both are moved.
     #[serde(
         default,
-        with = "crate::files::name::optional_path",
+        with = "asperity::files::name::optional_path",
         skip_serializing_if = "Option::is_none"
     )]
     recipe_from_here: Option<PathBuf>,
-    /// Those of the command line.
-    #[serde(with = "crate::files::name::paths")]
+    /// Scans given on the command line.
+    #[serde(with = "asperity::files::name::paths")]
     scans: Vec<PathBuf>,
-    /// That of the command line.
+    /// Tolerance given on the command line.
     #[serde(default)]
     tolerance: Option<f64>,
     /// Text of the recipe, which may be edited later.
@@ -47,12 +47,12 @@ pub(super) struct LastRun {
     /// Number of threads.
     #[serde(default)]
     threads: Option<usize>,
-    /// Of all other fields, to find damage.
+    /// Digest of all other fields, to detect damage.
     digest: Digest,
 }
 
 impl LastRun {
-    /// Beside the folders of the stages; no result.
+    /// Name of the note, a file beside the folders of the stages.
     pub(super) const FILE: &str = NOTE_FILE;
 
     /// # Errors
@@ -78,8 +78,8 @@ impl LastRun {
         })
     }
 
-    /// Fails for a run folder that is that of another recipe, unless it is to be taken over, and for a file in
-    /// place of the note that asperity did not write.
+    /// Fails if the run folder is that of another recipe and must not be taken over, or if a file that asperity did
+    /// not write has the name of the note.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -98,8 +98,8 @@ impl LastRun {
         }
     }
 
-    /// The note that is there, none if there is none that is whole; fails for a file in its place that asperity did
-    /// not write.
+    /// The note of a folder, `None` if it is missing or damaged; fails if a file that asperity did not write has its
+    /// name.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -112,7 +112,7 @@ impl LastRun {
         let there = Self::whole(&bytes).ok();
         if path.is_symlink() || there.is_none() && !bytes.starts_with(NOTE_HEAD.as_bytes()) {
             return Err(CliError::input(format!(
-                "{} is not as asperity writes it, which would have to replace it: move it away, or choose another --out",
+                "{} was not written by asperity, which would have to replace it: move it away, or choose another --out",
                 path.display()
             )));
         }
@@ -124,8 +124,8 @@ impl LastRun {
         same_file(&self.recipe_for(out), recipe)
     }
 
-    /// Where the recipe is now: as seen from the run folder if it is there, for both may have been moved together,
-    /// else where it was.
+    /// Present path of the recipe: relative to the run folder if it exists there, since both may have been moved
+    /// together, else the path at the time of the run.
     fn recipe_for(&self, out: &Path) -> PathBuf {
         let from_here = self.recipe_from_here.as_ref();
         let from_here = from_here.and_then(|path| out.join(path).canonicalize().ok());
@@ -145,7 +145,7 @@ impl LastRun {
         write_note(out, text.as_bytes()).map_err(CliError::failure)
     }
 
-    /// None where no run left one that is whole; then a warning says what is wrong with it.
+    /// `None` if there is no note, or a damaged one, about which there is a warning.
     pub(super) fn read(out: &Path, quiet: bool) -> Option<Self> {
         let path = out.join(Self::FILE);
         let read = match std::fs::read(&path) {
@@ -168,7 +168,7 @@ impl LastRun {
         }
     }
 
-    /// Whether the one in the folder is whole, or what is wrong with it; none if there is none.
+    /// Whether the note of a folder is intact, or what is wrong with it; `None` if there is no note.
     pub(super) fn state(out: &Path) -> Option<Result<(), String>> {
         let path = out.join(Self::FILE);
         if !path.exists() {
@@ -197,7 +197,7 @@ impl LastRun {
         }
     }
 
-    /// Why results are not what the recipe asks for, by stage; nothing of stages that have none.
+    /// Why results are not what the recipe asks for, by stage; stages without a result are left out.
     pub(super) fn doubts(&self, view: &RunView) -> BTreeMap<Stage, String> {
         let stages = Stage::ALL.into_iter();
         let there = stages.filter(|stage| view.path().join(stage.name()).exists());
@@ -218,8 +218,8 @@ impl LastRun {
         words.join(" ")
     }
 
-    /// Why the result of a stage in the folder `out` is not what the recipe asks for, as it is now or as it was read
-    /// by the last run; none if it is.
+    /// Why the result of a stage in the folder `out` is not what the recipe asks for, the present one or the text that
+    /// the last run read; `None` if it is.
     pub(super) fn doubt(&self, out: &Path, stage: &str) -> Option<String> {
         self.doubt_by_recipe(out, stage).or_else(|| self.doubt_by_note(out, stage))
     }
@@ -238,7 +238,7 @@ impl LastRun {
     fn doubt_by_note(&self, out: &Path, stage: &str) -> Option<String> {
         let path = self.recipe_for(out);
         let text = self.text.as_ref()?;
-        if crate::files::read_settings(&path).is_ok_and(|now| now == *text) {
+        if asperity::files::read_settings(&path).is_ok_and(|now| now == *text) {
             return None;
         }
         // A text that this version cannot read any more tells nothing; the recipe has had its say.
@@ -279,7 +279,7 @@ impl LastRun {
     }
 }
 
-/// Whether two paths lead to one file; by name where there is none.
+/// Whether two paths lead to one file; if there is no file, whether they are equal.
 fn same_file(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
@@ -287,7 +287,7 @@ fn same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The path of a file as seen from a folder; none if one of them is not there.
+/// The path of a file relative to a folder; `None` if one of them does not exist.
 fn relative(folder: &Path, file: &Path) -> Option<PathBuf> {
     let (folder, file) = (folder.canonicalize().ok()?, file.canonicalize().ok()?);
     let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();

@@ -3,7 +3,6 @@
 //! Results go to standard output, everything else to standard error. Exit code 0 is success, 1 a
 //! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
 
-mod bench;
 mod convert;
 mod error;
 mod export;
@@ -34,7 +33,7 @@ pub use error::CliError;
 use clap::{Parser, Subcommand};
 
 const EXIT_CODES: &str = "\
-Exit codes of every command: 0 success, 1 a computation failed or its result could not be written, 2 something that was given cannot be used, \
+Exit codes of every command: 0 success, 1 a computation failed or its result could not be written, 2 an option, a recipe or a file cannot be used, \
 130 interrupted.";
 
 /// Hysteretic rubber friction on asphalt: profilometer scans in, friction tables with error bars
@@ -61,7 +60,7 @@ enum Command {
     Export(export::Export),
     Report(report::Report),
     Plot(plot::Plot),
-    /// Solve a single contact problem, without any recipe.
+    /// Solve a single contact problem, without a recipe.
     #[command(subcommand)]
     Solve(solve::Solve),
     /// Make a rubber from measured moduli.
@@ -71,7 +70,6 @@ enum Command {
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
     Verify(verify::Verify),
-    Bench(bench::Bench),
     Completions(shell::Completions),
     Man(shell::Man),
 }
@@ -95,7 +93,6 @@ impl Arguments {
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),
-            Command::Bench(command) => command.run(self.quiet),
             Command::Init(command) => command.run(self.quiet),
             Command::Verify(command) => command.run(),
             Command::Completions(command) => command.run(),

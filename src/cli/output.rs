@@ -6,11 +6,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use super::CliError;
-use crate::artifact::temporary_beside;
-use crate::text::{cut, visible, visible_line};
+use asperity::artifact::temporary_beside;
+use asperity::text::{cut, visible, visible_line};
 
-/// Prints a result to standard output, control characters of names in it visibly. A reader that has
-/// seen enough, such as `head`, is no error.
+/// Prints a result to standard output, with control characters of names made visible. A closed pipe, as
+/// before `head`, is not an error.
 ///
 /// # Errors
 /// [`CliError::Failure`] if standard output cannot be written.
@@ -24,7 +24,7 @@ pub(super) fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// Tells something on standard error that is no result.
+/// Prints a note or a warning to standard error.
 pub(super) fn note(quiet: bool, text: impl Display) {
     if !quiet {
         // A closed standard error must not end a computation.
@@ -65,8 +65,8 @@ pub(super) fn significant(value: f64) -> String {
     }
 }
 
-/// Writes a file under a temporary name, forces it to the disk and renames it, so that it is there completely or
-/// not at all. What a link leads to is written in the same way; a device or a pipe (`/dev/stdout`) as it stands.
+/// Writes a file under a temporary name, forces it to the disk and renames it, so that a crash leaves the old file
+/// or the new one. The target of a link is written in the same way; a device or a pipe (`/dev/stdout`) directly.
 ///
 /// # Errors
 /// [`CliError::Failure`] that names the file; a file that exists and must not be overwritten is
@@ -84,7 +84,7 @@ pub(super) fn write_file(
         _ => CliError::failure(format!("cannot write {}: {error}", path.display())),
     };
     let there = fs::metadata(path);
-    // A device or a pipe has nothing in it that could be lost; a link that leads nowhere may be to what is elsewhere.
+    // Nothing is lost in a device or a pipe; the target of a dangling link may be on a disk that is not mounted.
     let stream = there.as_ref().is_ok_and(|there| !there.is_file() && !there.is_dir());
     if !overwrite && !stream && fs::symlink_metadata(path).is_ok() {
         return Err(already_exists(path));
@@ -101,7 +101,7 @@ pub(super) fn write_file(
     }
 }
 
-/// The folder of a file that is to be written, if it is not there.
+/// The folder in which a file is to be written, if it does not exist.
 fn missing_folder(path: &Path) -> Option<&Path> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty())?;
     (!folder.exists()).then_some(folder)
@@ -115,8 +115,8 @@ fn no_such_folder(path: &Path, folder: &Path) -> CliError {
     ))
 }
 
-/// Fails for a file that is there, unless it may be overwritten, and for one in a folder that is not there: before long work,
-/// of which it is to be the end.
+/// Fails if a file exists and must not be overwritten, or if its folder does not exist. Called before a long
+/// computation whose result the file will hold.
 ///
 /// # Errors
 /// [`CliError::Input`].
@@ -131,7 +131,7 @@ pub(super) fn refuse_existing(path: Option<&Path>, overwrite: bool) -> Result<()
     Ok(())
 }
 
-/// The refusal to overwrite a file.
+/// The error for a file that must not be overwritten.
 pub(super) fn already_exists(path: &Path) -> CliError {
     let path = visible_line(&path.to_string_lossy()).into_owned();
     CliError::input(format!("{path} exists already: choose another place, or give --force"))
@@ -142,7 +142,7 @@ fn write_by_rename(
     overwrite: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    // The full message would speak of the temporary name.
+    // The full message would name the temporary file.
     let mut file = temporary_beside(path).map_err(|error| io::Error::from(error.kind()))?;
     buffered(file.as_file_mut(), write)?;
     file.as_file().sync_all()?;

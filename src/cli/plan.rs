@@ -9,7 +9,7 @@ use super::output::{json, print, significant};
 use super::progress::Spinner;
 use super::recipe_options::RecipeOptions;
 use super::{CliError, threads, values};
-use crate::forecast::{Forecast, ScaleModel, forecast};
+use asperity::forecast::{Forecast, ScaleModel, forecast};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,9 +20,8 @@ Examples:
 
 /// Show which model each wave gets, on which grids, and what that costs.
 ///
-/// Runs the cheap stages and the half-space of one realisation, of eight where an accuracy is asked
-/// for, in a temporary folder; nothing is
-/// written to the run folder.
+/// Runs the cheap stages and the half-space of one realisation, or of eight if the recipe asks for an
+/// accuracy, in a temporary folder; nothing is written to the run folder.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct PlanCommand {

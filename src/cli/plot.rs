@@ -5,8 +5,8 @@ use super::last_run::LastRun;
 use super::output::{aligned, note, print, write_file};
 use super::run_folder;
 use super::values::meant;
-use crate::plot::png;
-use crate::report::figures::{ALL, Kind};
+use asperity::plot::png;
+use asperity::report::figures::{ALL, Kind};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ pub(super) struct Plot {
     /// File to write, .svg or .png; SVG on standard output if not given.
     #[arg(long, value_name = "FILE")]
     to: Option<PathBuf>,
-    /// Say which figures there are.
+    /// List the figures.
     #[arg(long, conflicts_with_all = ["figure", "run", "to"])]
     list: bool,
     /// Overwrite a file that is there already.
@@ -60,7 +60,7 @@ impl Plot {
         let view = run_folder::view_of_case(run)?;
         let figure = kind.figure(&view)?.ok_or_else(|| {
             let run = run.display();
-            CliError::input(format!("{run} has no figure `{name}`: that takes {}", kind.wants))
+            CliError::input(format!("{run} has no figure `{name}`: it needs {}", kind.requires))
         })?;
         let doubts = LastRun::read(run, quiet).map(|last| last.doubts(&view)).unwrap_or_default();
         for (_, doubt) in doubts.iter().filter(|(stage, _)| kind.stages.contains(stage)) {

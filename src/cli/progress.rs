@@ -6,19 +6,19 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::stages::Stage;
+use asperity::stages::Stage;
 
-/// A stage that is done sooner needs no bar.
+/// A stage that takes less time has no bar.
 const DELAY: Duration = Duration::from_secs(1);
 
 /// How often a spinner is drawn.
 const TICK: Duration = Duration::from_millis(500);
 
-/// A line that says what is under way and for how long, where nobody knows how much is left.
+/// A line that says what is running and for how long, for work of unknown length.
 pub(super) struct Spinner(Option<ProgressBar>);
 
 impl Spinner {
-    /// A line on standard error if that is a terminal, else none. It goes with the value.
+    /// A line on standard error if that is a terminal, else none. It disappears when the value is dropped.
     pub(super) fn new(quiet: bool, message: &str) -> Self {
         if quiet || !std::io::stderr().is_terminal() {
             return Self(None);
@@ -64,7 +64,7 @@ impl Bar {
         Self(Some(ProgressBar::new(0).with_style(style).with_prefix(what.to_owned())))
     }
 
-    /// Pieces of work are done.
+    /// Shows how many pieces are done.
     pub(super) fn advance(&self, done: u64, total: u64) {
         if let Some(bar) = &self.0 {
             bar.set_length(total);
@@ -81,7 +81,7 @@ impl Bar {
     }
 }
 
-/// The bar of the stage under way.
+/// The bar of the stage that is running.
 pub(super) struct Progress {
     shown: bool,
     state: Mutex<State>,
@@ -107,7 +107,7 @@ impl Progress {
         }
     }
 
-    /// Pieces of work are done.
+    /// Shows how many pieces are done.
     pub(super) fn advance(&self, done: u64, total: u64) {
         let Ok(mut state) = self.state.lock() else { return };
         let Some((stage, start)) = state.stage else { return };

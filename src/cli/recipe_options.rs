@@ -6,19 +6,19 @@ use clap::Args;
 
 use super::last_run::LastRun;
 use super::{CliError, values};
-use crate::files;
-use crate::recipe::{Recipe, RecipeError};
+use asperity::files;
+use asperity::recipe::{Recipe, RecipeError};
 
 /// Recipe, scans and run folder.
 #[derive(Debug, Args)]
 pub(super) struct RecipeOptions {
     /// Recipe, a TOML file.
     recipe: PathBuf,
-    /// Scan files or folders in place of those of the recipe; they are read as the recipe's
-    /// section [ingest.text] says.
+    /// Scan files or folders to use instead of those of the recipe; texts are read as its section
+    /// [ingest.text] says.
     #[arg(long, value_name = "PATH", num_args = 1..)]
     scans: Vec<PathBuf>,
-    /// Relative accuracy of the averaged friction, in place of what the recipe asks for.
+    /// Relative accuracy of the averaged friction, instead of that of the recipe.
     #[arg(long, value_name = "RELATIVE", value_parser = values::tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// Run folder for all results. If not given, runs/NAME beside the recipe NAME.toml; for recipes in a folder
@@ -27,10 +27,10 @@ pub(super) struct RecipeOptions {
     out: Option<PathBuf>,
 }
 
-/// A folder for recipes alone, whose runs lie beside it.
+/// Name of a folder that holds recipes alone: their runs are put beside it.
 const RECIPE_FOLDER: &str = "pipelines";
 
-/// What the commands that write into a run folder have besides.
+/// A further option of the commands that write into a run folder.
 #[derive(Debug, Args)]
 pub(super) struct TakeOver {
     /// Use the run folder although its last run was of another recipe file.
@@ -47,8 +47,8 @@ impl RecipeOptions {
         Ok(self.recipe_and_origin()?.0)
     }
 
-    /// The same, and what was given, to be kept with the results: both from one reading of the
-    /// file, which may be edited while it runs.
+    /// The recipe, and the note of what was given that is kept with the results. The file is read once,
+    /// since it may be edited during the run.
     ///
     /// # Errors
     /// [`CliError::Input`]; [`CliError::Failure`] if the working folder is not known.

@@ -4,7 +4,7 @@ use super::CliError;
 use super::last_run::LastRun;
 use super::output::{note, write_file};
 use super::run_folder;
-use crate::report::html::{Origin, document};
+use asperity::report::html::{Origin, document};
 use clap::Args;
 use std::path::PathBuf;
 

@@ -8,13 +8,13 @@ use clap::{Args, Subcommand, ValueEnum};
 
 use super::output::{already_exists, json, note, print, refuse_existing, write_file};
 use super::{CliError, values};
-use crate::report::rubber_figure;
-use crate::rubber::fit::{
+use asperity::report::rubber_fit_figure;
+use asperity::rubber::fit::{
     DescribedColumn, FitError, FitOptions, LeftOut, MasterCurve, ModulusKind, ReducedPoint,
     SweepTable, TableOptions, VerticalChoice, doubts, fit_sweeps, read_shift_factors, read_sweeps,
 };
-use crate::rubber::to_toml;
-use crate::scans::description::{DecimalMark, Separator};
+use asperity::rubber::to_toml;
+use asperity::scans::description::{DecimalMark, Separator};
 use summary::Summary;
 
 const EXAMPLES: &str = "\
@@ -90,7 +90,7 @@ pub(super) struct Fit {
     /// Poisson ratio of the rubber, 0 to 0.5; also makes Young's modulus of shear: E = 2 (1 + nu) G.
     #[arg(long, value_name = "NU", default_value = "0.49", value_parser = values::finite, allow_negative_numbers = true)]
     poisson_ratio: f64,
-    /// Number of terms [default: the one with the least criterion of Schwarz].
+    /// Number of terms [default: the one with the lowest Bayesian information criterion (Schwarz)].
     #[arg(long, value_name = "N", value_parser = values::count::<usize>, allow_negative_numbers = true)]
     terms: Option<usize>,
     /// Reference temperature in °C, one of those measured [default: the middle one].
@@ -111,7 +111,7 @@ pub(super) struct Fit {
     /// Where the columns are, by number or by name: frequency_hz=1,storage_mpa=2,loss_mpa=3.
     #[arg(long, value_name = "QUANTITY=COLUMN", value_delimiter = ',')]
     columns: Vec<DescribedColumn>,
-    /// What stands between the columns of a text [default: found from the content].
+    /// Separator of the columns of a text [default: found from the content].
     #[arg(long, value_enum, value_name = "WHAT")]
     separator: Option<TextSeparator>,
     /// Decimal mark, `.` or `,` [default: found from the content].
@@ -185,7 +185,7 @@ impl Fit {
         }
         let source = source(&self.sweep, &fit);
         let text = to_toml(&fit.rubber(&self.name(), self.poisson_ratio), &source);
-        let svg = self.plot.as_ref().map(|_| rubber_figure(&fit)).transpose();
+        let svg = self.plot.as_ref().map(|_| rubber_fit_figure(&fit).svg()).transpose();
         let svg = svg.map_err(CliError::failure)?;
         write_file(&self.to, self.force, |out| out.write_all(text.as_bytes()))?;
         if let (Some(path), Some(svg)) = (&self.plot, svg) {
@@ -225,7 +225,7 @@ impl Fit {
         })
     }
 
-    /// Tells how the file was read, where its header is not this program's, and what looks wrong.
+    /// Prints how the file was read, if its header is not in the form of this program, and what looks wrong.
     fn tell(&self, table: &SweepTable, doubts: &[String], quiet: bool) {
         let name = file_name(&self.sweep);
         if table.interpreted {
@@ -237,7 +237,7 @@ impl Fit {
         }
     }
 
-    /// What is wrong before anything is read or written.
+    /// Checks the options before anything is read or written.
     fn check(&self) -> Result<(), CliError> {
         if !(0.0..=0.5).contains(&self.poisson_ratio) {
             let ratio = self.poisson_ratio;
@@ -299,13 +299,13 @@ impl Fit {
     }
 
     fn name(&self) -> String {
-        let of_file = || self.to.file_stem().map(crate::files::name::text);
+        let of_file = || self.to.file_stem().map(asperity::files::name::text);
         self.name.clone().or_else(of_file).unwrap_or_else(|| "rubber".into())
     }
 }
 
 fn file_name(path: &Path) -> String {
-    crate::files::name::text(path.file_name().unwrap_or(path.as_os_str()))
+    asperity::files::name::text(path.file_name().unwrap_or(path.as_os_str()))
 }
 
 /// What the rubber file says of its source.

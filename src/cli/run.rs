@@ -1,6 +1,6 @@
 //! `asperity run`: a recipe from scans to tables.
 
-use crate::stages;
+use asperity::stages;
 use clap::Args;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,13 +14,13 @@ use super::progress::{Bar, Progress};
 use super::recipe_options::{RecipeOptions, TakeOver};
 use super::sweep::{claim_sweep, note_recipes, tell, warnings};
 use super::{CliError, threads, values};
-use crate::artifact::{Manifest, RunFolder, RunView};
-use crate::files::name::path_text;
-use crate::pipeline::{Event, PipelineError, Ready, Selection};
-use crate::recipe::Recipe;
-use crate::stages::ingest::{CLEANING_FILE, FAULTS, FaultRow};
-use crate::stages::{Stage, Watch};
-use crate::sweep;
+use asperity::artifact::{Manifest, RunFolder, RunView};
+use asperity::files::name::path_text;
+use asperity::pipeline::{Event, PipelineError, Ready, Selection};
+use asperity::recipe::Recipe;
+use asperity::stages::ingest::{CLEANING_FILE, FAULTS, FaultRow};
+use asperity::stages::{Stage, Watch};
+use asperity::sweep;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -61,7 +61,7 @@ pub(super) struct Run {
     json: bool,
 }
 
-/// What was done about a stage.
+/// What a run did about a stage.
 #[derive(Serialize)]
 struct StageSummary {
     stage: Stage,
@@ -97,7 +97,7 @@ impl Run {
         let ready = Ready::new(&recipe, &out, selection)?;
         last_run.check(&out, self.folder.take_over)?;
         let folder = RunFolder::open(&out).map_err(PipelineError::from)?;
-        // From the beginning: also a run that is stopped has made the folder its own.
+        // At the start: the folder of an interrupted run is that of this recipe, too.
         last_run.write(&out, self.folder.take_over)?;
         ready
             .run(&folder, interrupt.flag(), &|event| match event {
@@ -123,7 +123,7 @@ impl Run {
             .inspect_err(|error| {
                 progress.finish();
                 if error.is_interrupt() {
-                    note(quiet, "what is done is kept: the same command continues");
+                    note(quiet, "results so far are kept: the same command continues");
                 }
             })?;
         if self.json {
@@ -154,7 +154,7 @@ impl Run {
             progress: &|done, total| bar.advance(done, total),
             interrupted: interrupt.flag(),
         };
-        // Paths in the recipes of the cases must lead somewhere from their folders too.
+        // The recipes of the cases are read from other folders, so their paths are absolute.
         let recipe = recipe.clone().absolute().map_err(CliError::failure)?;
         let out = &std::path::absolute(out).map_err(CliError::failure)?;
         claim_sweep(&recipe, last_run, out, self.folder.take_over)?;
@@ -216,10 +216,10 @@ fn warn(quiet: bool, manifest: &Manifest) {
     }
 }
 
-/// What was cleaned from the scans, in one line, and where more of it stands.
+/// One line on what was cleaned from the scans, and the file with the details.
 fn cleaned(quiet: bool, out: &Path) {
     let view = RunView::of(out);
-    // A summary must not fail a run that has its results: whoever reads them next says why.
+    // An unreadable table must not fail a finished run; the next command that reads it says why.
     let Ok((rows, _)) = view.read_table(FAULTS) else { return };
     let taken = |row: &&FaultRow| {
         row.count > 0 && matches!(row.decision.as_str(), "missing" | "cut" | "averaged")

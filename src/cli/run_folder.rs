@@ -1,8 +1,8 @@
 //! The run folder that a command reads.
 
 use super::CliError;
-use crate::artifact::RunView;
-use crate::sweep::CASES_FOLDER;
+use asperity::artifact::RunView;
+use asperity::sweep::CASES_FOLDER;
 use std::path::Path;
 
 /// View of a run folder.

@@ -1,4 +1,4 @@
-//! What a shell and its manual want to know of the commands.
+//! Completions for shells and manual pages.
 
 use std::io;
 

@@ -5,7 +5,7 @@ use clap::Args;
 use super::CliError;
 use super::output::{json, print};
 use super::recipe_options::RecipeOptions;
-use crate::pipeline::{self, State};
+use asperity::pipeline::{self, State};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -42,7 +42,7 @@ impl Status {
                 .collect();
             return print(&json(&stages)?);
         }
-        let line = |(stage, state): &(crate::stages::Stage, State)| match state {
+        let line = |(stage, state): &(asperity::stages::Stage, State)| match state {
             State::Fresh => format!("{:<13} fresh\n", stage.name()),
             State::Stale(reasons) => {
                 format!("{:<13} stale: {}\n", stage.name(), reasons.join("; "))

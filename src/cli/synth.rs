@@ -1,5 +1,6 @@
 //! `asperity synth`: synthetic scans of asphalt.
 
+use asperity::units::Units;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,8 +10,8 @@ use clap::Args;
 use super::interrupt::Interrupt;
 use super::output::{already_exists, note, print, significant, write_file};
 use super::{CliError, values};
-use crate::error_kind::HasKind;
-use crate::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
+use asperity::error_kind::HasKind;
+use asperity::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
 
 /// All scans are held in memory, 16 bytes a point.
 const MAX_TOTAL_POINTS: f64 = (1_u64 << 28) as f64;
@@ -102,23 +103,23 @@ impl SpecimenOptions {
     fn parameters(&self) -> SyntheticAsphalt {
         let outer_regime = OuterRegime {
             hurst_exponent: self.outer_hurst_exponent,
-            crossover_lag: self.crossover_lag_mm / 1e3,
+            crossover_lag: self.crossover_lag_mm.mm_to_m(),
         };
         SyntheticAsphalt {
             scans: self.scans,
-            length: self.length_mm / 1e3,
-            spacing: self.spacing_um / 1e6,
+            length: self.length_mm.mm_to_m(),
+            spacing: self.spacing_um.um_to_m(),
             hurst_exponent: self.hurst_exponent,
             outer_regime: (!self.no_outer_regime).then_some(outer_regime),
-            parallel_correlation_length: self.parallel_correlation_length_mm / 1e3,
-            perpendicular_correlation_length: self.perpendicular_correlation_length_mm / 1e3,
+            parallel_correlation_length: self.parallel_correlation_length_mm.mm_to_m(),
+            perpendicular_correlation_length: self.perpendicular_correlation_length_mm.mm_to_m(),
             plateau_sharpness: self.plateau_sharpness,
             skewness: self.skewness,
-            spot_diameter: self.spot_diameter_um / 1e6,
+            spot_diameter: self.spot_diameter_um.um_to_m(),
             tilt: self.tilt,
-            noise: self.noise_um / 1e6,
+            noise: self.noise_um.um_to_m(),
             missing_fraction: self.missing_fraction,
-            missing_run_length: self.missing_run_length_um / 1e6,
+            missing_run_length: self.missing_run_length_um.um_to_m(),
             seed: self.seed,
         }
     }
@@ -204,8 +205,7 @@ impl Synth {
     }
 }
 
-/// Number of scans in the folder that were not written now; they would be taken for the same
-/// specimen.
+/// Number of other scans in the folder, which a recipe would take for scans of the same specimen.
 fn other_scans(folder: &Path, written: &[OsString]) -> std::io::Result<usize> {
     let other = |name: &OsString| {
         let text = name.to_string_lossy();

@@ -5,11 +5,11 @@ use std::thread::available_parallelism;
 
 use super::CliError;
 
-/// Threads beyond any machine that this runs on: a mistyped number, each of which would take a stack and
-/// the memory of a contact.
+/// Largest number of threads that is not taken for a typing mistake; each has a stack and the memory of a
+/// contact.
 pub(super) const MOST: usize = 1024;
 
-/// The number of threads that was asked for, if it is one that can be meant.
+/// The number of threads that was asked for, if it is plausible.
 ///
 /// # Errors
 /// [`CliError::Input`] for zero and for more than [`MOST`].

@@ -5,11 +5,11 @@ use std::str::FromStr;
 use serde::de::{DeserializeOwned, value::Error};
 use serde::de::{IntoDeserializer, value::StrDeserializer};
 
-use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
-use crate::files::nearest;
-use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use asperity::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
+use asperity::files::nearest;
+use asperity::scans::description::{Column, DecimalMark, LengthUnit, Separator};
 
-/// A number that is finite; `NaN` and `inf` are no quantities.
+/// A finite number; `NaN` and `inf` are refused.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     let number = text.trim();
     match number.parse::<f64>() {
@@ -54,10 +54,10 @@ pub(super) fn one_or_more<T: FromStr + Default + PartialEq>(text: &str) -> Resul
     }
 }
 
-/// One line of text, as it stands in a script.
+/// One line of text for a job script.
 pub(super) fn line(text: &str) -> Result<String, String> {
     match text.chars().any(char::is_control) || text.trim().is_empty() {
-        true => Err("it must be one line of text, which stands in the job script".into()),
+        true => Err("it must be one line of text, since it is written into the job script".into()),
         false => Ok(text.to_owned()),
     }
 }
@@ -65,7 +65,7 @@ pub(super) fn line(text: &str) -> Result<String, String> {
 /// The number of a channel, of which the first is 1.
 pub(super) fn channel(text: &str) -> Result<usize, String> {
     match count(text)? {
-        0 => Err("0 is no channel; the first is 1".into()),
+        0 => Err("0 is not a channel; the first is 1".into()),
         number => Ok(number),
     }
 }
@@ -86,7 +86,7 @@ pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Which of the known names was meant, else all of them.
+/// Suggests the most similar of the known names, or lists all of them.
 pub(super) fn meant(name: &str, known: &[&str]) -> String {
     nearest(name, known).map_or_else(
         || format!("there are {}", known.join(", ")),
@@ -114,7 +114,7 @@ pub(super) fn column(text: &str) -> Result<Column, String> {
     Ok(text.parse().map_or_else(|_| Column::Name(text.to_owned()), Column::Number))
 }
 
-/// The value that the recipe writes in the same way.
+/// A value in the spelling of the recipe.
 fn one_of<T: DeserializeOwned>(text: &str, choices: &str) -> Result<T, String> {
     let deserializer: StrDeserializer<'_, Error> = text.into_deserializer();
     T::deserialize(deserializer).map_err(|_| format!("choose {choices}"))

@@ -1,4 +1,4 @@
-//! `asperity verify`: whether a run folder still is what was written.
+//! `asperity verify`: whether the files of a run folder are unchanged.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,24 +9,24 @@ use serde::Serialize;
 use super::CliError;
 use super::last_run::LastRun;
 use super::output::{json, print};
-use crate::artifact::{
+use asperity::artifact::{
     Input, Manifest, PACK_EXTENSION, RunView, SOLVES_FOLDER, read_pack_info, read_stored_solve,
 };
-use crate::stages::Stage;
-use crate::sweep::{self, CASES_FOLDER, SURFACES_FOLDER};
+use asperity::stages::Stage;
+use asperity::sweep::{self, CASES_FOLDER, SURFACES_FOLDER};
 
 const EXAMPLES: &str = "\
 Examples:
-  Whether a folder that was copied, or lay on a disk for a year, is whole:
+  Check a folder that was copied, or kept on a disk for a year:
     asperity verify runs/asphalt
-  The same of a sweep, with all its cases:
+  Check a sweep with all its cases:
     asperity verify runs/sweep";
 
 /// Compare every file of a run folder with the digest it was written with.
 ///
-/// Results are compared with the manifest of their stage, what a stage has read with the results of the stages
-/// before it, stored solves with the digest they carry. Exit code 1 if anything is damaged, missing, of another run
-/// or not asperity's; a run computes such a stage anew, and leaves damaged solves out.
+/// Results are compared with the manifest of their stage, inputs of a stage with the results of the stages before it,
+/// stored solves with the digest in them. Exit code 1 if anything is damaged, missing, from another run or not written
+/// by asperity; a run computes such a stage again and ignores damaged solves.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Verify {
@@ -72,8 +72,8 @@ impl Verify {
         let damaged: usize = findings.iter().map(|finding| finding.damaged.len()).sum();
         if damaged > 0 {
             return Err(CliError::failure(format!(
-                "{damaged} faults in {}, listed above: `asperity run` computes such stages anew, once what is not \
-                 asperity's is moved away",
+                "{damaged} faults in {}, listed above: `asperity run` computes these stages again, once files that \
+                 asperity did not write are moved away",
                 self.run.display()
             )));
         }
@@ -96,7 +96,7 @@ fn stages(run: &Path) -> Result<Vec<Finding>, CliError> {
     let mut findings = Vec::new();
     for folder in folders(run)? {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        // What is linked is verified where it is.
+        // A linked result is verified in its own folder.
         if !is_stage(&name) || folder.is_symlink() {
             continue;
         }
@@ -137,7 +137,8 @@ fn stage(view: &RunView, name: String) -> Result<Finding, CliError> {
     Ok(Finding { name, files: manifest.outputs.len() + 1, damaged })
 }
 
-/// Why what a stage has read is not what is there now; none if it is, or if it came from outside of the folder.
+/// Why an input of a stage is not the present result of the stage before; `None` if it is, or if it came from outside
+/// of the folder.
 fn wrong_input(view: &RunView, stage: &str, input: &Input) -> Option<String> {
     if input.origin.is_some() {
         return None;
@@ -157,7 +158,7 @@ fn wrong_input(view: &RunView, stage: &str, input: &Input) -> Option<String> {
     let before = RunView::of(folder);
     let path = before.file(upstream, file);
     let what = match before.stage_manifest(upstream) {
-        // A manifest that cannot be read is a fault of that stage.
+        // An unreadable manifest is reported for its own stage.
         Err(_) => return None,
         Ok(manifest) => match manifest.as_ref().and_then(|manifest| manifest.output(file)) {
             Some(output) if output.content_digest == input.digest => return None,
@@ -204,7 +205,7 @@ fn solves(store: &Path) -> Result<Option<Finding>, CliError> {
     }
     let mut finding = Finding { name: SOLVES_FOLDER.into(), files: 0, damaged: Vec::new() };
     for folder in folders(store)? {
-        // A link is not asperity's, nor what it leads to.
+        // asperity makes no links here.
         if folder.is_symlink() {
             continue;
         }

@@ -41,12 +41,12 @@ impl HasKind for ReportError {
     }
 }
 
-/// The rows of a table, or none if the run has no such result.
+/// The rows of a table, or `None` if the run has no such result.
 pub(super) fn rows<R: Row>(run: &RunView, wanted: Table<R>) -> Result<Option<Vec<R>>, ReportError> {
     Ok(table(run, wanted)?.map(|(rows, _)| rows))
 }
 
-/// The rows of a table and its metadata, or none if the run has no such result.
+/// The rows of a table and its metadata, or `None` if the run has no such result.
 pub(super) fn table<R: Row>(
     run: &RunView,
     wanted: Table<R>,

@@ -50,7 +50,7 @@ impl Study {
         })
     }
 
-    /// Conclusions first, then what they rest on.
+    /// The study as a Markdown document: conclusions first, then all values.
     pub fn markdown(&self) -> String {
         let mut text = String::new();
         self.conclusions(&mut text);
@@ -193,7 +193,7 @@ impl Study {
     }
 }
 
-/// A column for each model beside two that say where.
+/// A table with two columns of coordinates and a column for each model.
 fn side_by_side(
     text: &mut String,
     header: [&str; 2],
@@ -216,7 +216,7 @@ fn side_by_side(
     text.push('\n');
 }
 
-/// Value and mesh error, or where the path ended.
+/// Value and mesh error, or the pressure at which the path ended.
 fn cell(row: &PointRow, quantity: Quantity) -> String {
     let at = |pressure: Option<f64>| pressure.map(|pressure| format!("{pressure:.3} MPa"));
     match quantity(row) {

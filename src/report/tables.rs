@@ -1,10 +1,9 @@
 //! Friction tables in the layout of the published ones: contact area in the first column, one
 //! column per realisation, their average.
 
-use crate::artifact::{ArtifactError, RunView};
+use crate::artifact::{ArtifactError, ExportTable, RunView, Values};
 use crate::stages::tables::{ComparisonRow, CorrectionRow, FrictionRow, Model};
 use crate::text::{latex_text, markdown_text};
-use crate::artifact::{ArtifactError, Export, Values};
 use std::fmt::Write;
 
 /// More realisations than this are left to CSV and Parquet.
@@ -87,7 +86,7 @@ impl FrictionTable {
         format!("friction_{}_{}_waves_{}_mm_s", self.model, self.waves, self.speed_mm_s)
     }
 
-    /// What the averages rest on.
+    /// Number of realisations in the averages, in words.
     fn basis(&self) -> String {
         let realisations = self.realisations();
         match self.rows.first().and_then(|row| row.half_space_realisations) {
@@ -137,7 +136,7 @@ impl FrictionTable {
 ///
 /// # Errors
 /// [`ArtifactError::NotRepresentable`] if Arrow refuses the columns.
-pub fn long_table(rows: &[FrictionRow]) -> Result<Export, ArtifactError> {
+pub fn long_table(rows: &[FrictionRow]) -> Result<ExportTable, ArtifactError> {
     let optional = |name: &str, value: &dyn Fn(&FrictionRow) -> Option<f64>| {
         (name.to_owned(), Values::Float(rows.iter().map(value).collect()))
     };
@@ -170,7 +169,7 @@ pub fn long_table(rows: &[FrictionRow]) -> Result<Export, ArtifactError> {
         optional("error_estimate", &|row| row.error_estimate),
         column("pressure_mpa", |row| row.pressure_mpa),
     ]);
-    Export::new(columns)
+    ExportTable::new(columns)
 }
 
 /// Tables as Markdown, each with its caption.
@@ -297,6 +296,7 @@ pub fn latex(tables: &[FrictionTable], about: &About) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     fn about(rubber: &str) -> About {
         About { rubber: rubber.into(), temperature_c: None, tolerance: None }
@@ -369,7 +369,10 @@ mod tests {
         let table = long_table(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
         assert_eq!(table.names().len(), 16);
         let rows = table.first_rows(2).unwrap();
-        assert_eq!((&rows[0]["realisation_2"], &rows[1]["realisation_2"]), (&json!(0.8), &json!(null)));
+        assert_eq!(
+            (&rows[0]["realisation_2"], &rows[1]["realisation_2"]),
+            (&json!(0.8), &json!(null))
+        );
     }
 
     /// Names that would end a caption, a comment or the run of LaTeX.

@@ -280,8 +280,8 @@ fn a_channel_of_an_erd_file_is_chosen_by_its_number() {
     assert!(refused.contains("1 LElev., 2 RElev."), "{refused}");
     assert!(asperity_at("inspect {} --erd-channel 0", &road).error(2).contains("the first is 1"));
     let other = asperity_at("inspect {} --erd-channel 2", &csv).error(2);
-    assert!(other.contains("is no ERD file"), "{other}");
+    assert!(other.contains("is not an ERD file"), "{other}");
     let to = folder.path().join("again.sdf");
     let convert = format!("convert {{}} --erd-channel 2 --to {}", to.display());
-    assert!(asperity_at(&convert, &csv).error(2).contains("is no ERD file"));
+    assert!(asperity_at(&convert, &csv).error(2).contains("is not an ERD file"));
 }

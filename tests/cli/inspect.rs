@@ -187,7 +187,7 @@ fn truncated_and_foreign_files_are_named() {
     let path = run.path().join("file");
     let cases: [(&[u8], &str); 6] = [
         (b"", "is empty"),
-        (b"\x7fELF\0\0", "is none of Arrow table"),
+        (b"\x7fELF\0\0", "is not an Arrow table"),
         (
             b"{\"schema\": \"asperity.manifest\", \"version\": 9}",
             "version 9, this tool reads version 2",
@@ -197,14 +197,14 @@ fn truncated_and_foreign_files_are_named() {
             "holds asperity.recipe, expected asperity.manifest",
         ),
         (b"{\"schema\": \"asperity.solve\", \"version\": 1}", "cannot be read as stored solve"),
-        (b"{\"a\": 1}", "no readable manifest"),
+        (b"{\"a\": 1}", "cannot be read as a manifest"),
     ];
     for (bytes, part) in cases {
         fs::write(&path, bytes).unwrap();
         let error = asperity_at("inspect {}", &path).error(2);
         assert!(error.contains(part) && error.contains("/file"), "{error}");
         // A file that is not asperity's is not to be deleted.
-        assert!(part != "no readable manifest" || !error.contains("delete"), "{error}");
+        assert!(part != "cannot be read as a manifest" || !error.contains("delete"), "{error}");
     }
     assert!(asperity("inspect no/such").error(2).contains("no/such"));
     let folder = asperity_at("inspect {}", &project("src")).error(2);

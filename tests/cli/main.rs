@@ -5,7 +5,6 @@ mod common;
 #[path = "../common/outcome.rs"]
 mod outcome;
 
-mod bench;
 mod campaign;
 mod files;
 mod inspect;

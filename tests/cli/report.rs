@@ -170,16 +170,23 @@ fn a_damaged_result_is_named_and_not_shown() {
 }
 
 #[test]
+fn an_exported_figure_is_the_plotted_one() {
+    let campaign = finished();
+    let plotted = outcome(&campaign, "plot friction out").result();
+    assert_eq!(outcome(&campaign, "export out --format svg").result(), plotted);
+}
+
+#[test]
 fn every_figure_is_drawn_as_svg_and_png() {
     let campaign = finished();
     let list = outcome(&campaign, "plot --list").result();
     let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(names.len(), 13);
+    assert_eq!(names.len(), 14);
     for name in names {
-        // No published table, no microscale.
-        if ["comparison", "correction"].contains(&name) {
+        // No published table, no microscale, no study.
+        if ["comparison", "correction", "study"].contains(&name) {
             let message = outcome(&campaign, &format!("plot {name} out")).error(2);
-            assert!(message.contains("that takes"), "{message}");
+            assert!(message.contains("it needs"), "{message}");
             continue;
         }
         let svg = outcome(&campaign, &format!("plot {name} out")).result();

@@ -1,9 +1,9 @@
 //! Export of the study of one sine wave.
 
 use super::{Export, Format};
-use crate::artifact::{RunView, csv_bytes, data_frame};
 use crate::cli::CliError;
-use crate::report::{Study, study_figure};
+use asperity::artifact::{ExportTable, RunView};
+use asperity::report::{Study, study_figure};
 
 const STAGE: &str = "sinusoid";
 
@@ -18,7 +18,7 @@ impl Export {
         }
         match self.format {
             Format::Markdown => self.text(&read(view)?.markdown()),
-            Format::Svg => self.text(&study_figure(&read(view)?)?),
+            Format::Svg => self.text(&study_figure(&read(view)?).svg()?),
             Format::Csv => self.study_csv(view),
             Format::Latex | Format::Parquet | Format::Xlsx => {
                 Err(CliError::input("the study of one sine is exported as markdown, csv or svg"))
@@ -34,9 +34,9 @@ impl Export {
         std::fs::create_dir_all(folder).map_err(|error| CliError::no_folder(folder, &error))?;
         let manifest = view.stage_manifest(STAGE)?;
         for output in manifest.into_iter().flat_map(|manifest| manifest.outputs) {
-            let frame = data_frame(&view.file(STAGE, &output.file))?;
+            let table = ExportTable::read(&view.file(STAGE, &output.file))?;
             let path = folder.join(&output.file).with_extension("csv");
-            self.bytes(&path, csv_bytes(&frame))?;
+            self.bytes(&path, table.csv())?;
         }
         Ok(())
     }

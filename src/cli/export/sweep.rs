@@ -1,11 +1,11 @@
 //! The tables of all cases of a sweep.
 
 use super::{CliError, Export, Format, csv_text, print};
-use crate::artifact::{RunView, csv_bytes, data_frame, parquet_bytes};
-use crate::report::{About, friction_tables, latex, markdown};
-use crate::stages::tables::FrictionRow;
-use crate::sweep::{FRICTION, STAGE, SweepFrictionRow};
-use crate::text::{markdown_text, visible_line};
+use asperity::artifact::{ExportTable, RunView};
+use asperity::report::{About, friction_tables, latex, markdown};
+use asperity::stages::tables::FrictionRow;
+use asperity::sweep::{FRICTION, STAGE, SweepFrictionRow};
+use asperity::text::{markdown_text, visible_line};
 use std::fmt::Write;
 
 impl Export {
@@ -36,11 +36,11 @@ impl Export {
             ));
         }
         view.verify(STAGE)?;
-        let mut frame = data_frame(&view.path_of(FRICTION))?;
+        let table = ExportTable::read(&view.path_of(FRICTION))?;
         match (self.format, &self.to) {
-            (Format::Csv, None) => print(&csv_text(&frame)?),
-            (Format::Csv, Some(path)) => self.bytes(path, csv_bytes(&frame)),
-            (_, Some(path)) => self.bytes(path, parquet_bytes(&mut frame)),
+            (Format::Csv, None) => print(&csv_text(&table)?),
+            (Format::Csv, Some(path)) => self.bytes(path, table.csv()),
+            (_, Some(path)) => self.bytes(path, table.parquet()),
             (_, None) => Err(CliError::input("Parquet is binary: give a file with --to")),
         }
     }
@@ -48,7 +48,7 @@ impl Export {
     fn document(
         &self,
         view: &RunView,
-        one: impl Fn(&str, &[crate::report::FrictionTable], &About) -> String,
+        one: impl Fn(&str, &[asperity::report::FrictionTable], &About) -> String,
     ) -> Result<(), CliError> {
         let rows = view.rows(FRICTION)?;
         let manifest = view.stage_manifest(STAGE)?;

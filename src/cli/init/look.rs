@@ -1,4 +1,4 @@
-//! What the scans say of a recipe: how they are read, their lengths and spacings.
+//! What a recipe needs to know of the scans: how they are read, their lengths and spacings.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use super::ladder::Extent;
 use crate::cli::CliError;
 use crate::cli::inspect::matrix_problem;
-use crate::scans::file::{Grid, MapLines, ScanFile, parse_file};
-use crate::scans::text_shape::TextShape;
-use crate::scans::{Described, TextFormat, parse_described, read_bytes};
+use asperity::scans::file::{Grid, MapLines, ScanFile, parse_file};
+use asperity::scans::text_shape::TextShape;
+use asperity::scans::{Described, TextFormat, parse_described, read_bytes};
 
-/// What was seen of all files.
+/// What was found in the files.
 pub(super) struct Look {
-    /// The section that describes the texts; empty where there are none.
+    /// The section that describes the texts; empty without texts.
     pub(super) text_section: String,
     /// Which lines of the height maps are longer, where there are maps.
     pub(super) map_lines: Option<MapLines>,
@@ -22,7 +22,7 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Looks at files, of which the first text shows how texts are read.
+    /// Reads files; the first text shows how texts are read.
     ///
     /// # Errors
     /// [`CliError::Input`] if the first file cannot be read, or holds no scan.
@@ -76,7 +76,7 @@ impl Look {
     ) -> Result<(), String> {
         if format.is_none() {
             let shape = TextShape::of(bytes).ok_or_else(|| {
-                format!("{} is text without lines of numbers: no scan", file.display())
+                format!("{} is text without lines of numbers, not a scan", file.display())
             })?;
             if shape.is_matrix() {
                 return Err(format!("{}: {}", file.display(), matrix_problem(&shape)));
@@ -104,7 +104,7 @@ impl Look {
         Ok(())
     }
 
-    /// The longer lines of a map are those that say more of the long waves.
+    /// Takes the longer lines of a map, since they show more of the long waves.
     fn take_grid(&mut self, scan: &ScanFile) {
         let line = |points: usize, spacing: f64| Extent { points, spacing };
         match scan.grid {
@@ -142,7 +142,7 @@ pub(super) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
             if hidden {
                 continue;
             }
-            // A link to a drive that is not there is a scan that would be missed in silence.
+            // Without this, a link to a missing drive would be a scan left out silently.
             let found = fs::metadata(&file).map_err(|error| {
                 CliError::input(format!("cannot read {}: {error}", file.display()))
             })?;

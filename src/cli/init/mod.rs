@@ -11,17 +11,17 @@ use clap::Args;
 
 use super::CliError;
 use super::output::{note, print, write_file};
-use crate::recipe::Recipe;
-use crate::scans::file::MapLines;
+use asperity::recipe::Recipe;
+use asperity::scans::file::MapLines;
 use ladder::Ladder;
 use look::Look;
 use relative::{quoted, relative};
 
-/// The recipe with marks for what depends on the scans.
+/// The recipe with placeholders for what depends on the scans.
 const RECIPE: &str = include_str!("recipe.toml");
-/// The rubber of the thesis, until there is a better one.
+/// The rubber of the thesis, to be replaced by the user's own.
 const RUBBER: &str = include_str!("../../../data/rubber/table_2_1.toml");
-/// Description of text scans where no file shows one.
+/// Description of text scans if there are no scans yet.
 const TEXT: &str = "\
 # How text files and workbooks (.xlsx) are read; `asperity inspect FILE` proposes this section. Files of instruments
 # (SDF, X3P, Digital Surf, ERD ...) need none.
@@ -57,7 +57,7 @@ impl Init {
     /// Runs the command.
     ///
     /// # Errors
-    /// [`CliError::Input`] for a folder that has something in it, or scans that cannot be read.
+    /// [`CliError::Input`] for a folder that is not empty, or scans that cannot be read.
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         let folder = &self.folder;
         let occupied = match fs::read_dir(folder) {
@@ -111,7 +111,7 @@ impl Init {
         ))
     }
 
-    /// The list of scans as it stands in the recipe, and what they say.
+    /// The list of scans for the recipe, and what was found in them.
     fn scans(&self) -> Result<(String, Look), CliError> {
         if self.scans.is_empty() {
             let (text_section, extents) = (TEXT.into(), Vec::new());

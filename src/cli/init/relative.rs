@@ -1,11 +1,11 @@
-//! Paths as they stand in a recipe: relative to its folder.
+//! Paths of a recipe, relative to its folder.
 
 use std::path::{Component, Path, PathBuf};
 
 use crate::cli::CliError;
 
-/// The way from `folder`, which need not be there yet, to the file or folder `to`, which is. Where
-/// they have no root in common, the whole path.
+/// The path of the existing file or folder `to` relative to `folder`, which need not exist yet; the
+/// absolute path if they have no root in common.
 ///
 /// # Errors
 /// [`CliError::Input`] for a path that is not there.
@@ -13,7 +13,7 @@ pub(super) fn relative(folder: &Path, to: &Path) -> Result<PathBuf, CliError> {
     let failed = |path: &Path, error| CliError::input(format!("{}: {error}", path.display()));
     let to = to.canonicalize().map_err(|error| failed(to, error))?;
     let absolute = std::path::absolute(folder).map_err(|error| failed(folder, error))?;
-    // Links on the way to the folder lead elsewhere; what is not there yet has none.
+    // Resolve the links in the part of the path that exists.
     let known = absolute.ancestors().find_map(|path| Some((path, path.canonicalize().ok()?)));
     let from = match known {
         Some((path, known)) => known.join(absolute.strip_prefix(path).unwrap_or(Path::new(""))),
@@ -28,14 +28,14 @@ pub(super) fn relative(folder: &Path, to: &Path) -> Result<PathBuf, CliError> {
     Ok(if way.as_os_str().is_empty() { PathBuf::from(".") } else { way })
 }
 
-/// A path as a text of a recipe.
+/// A path as a string in a recipe.
 ///
 /// # Errors
-/// [`CliError::Input`] for a name that is no UTF-8, which no recipe can hold.
+/// [`CliError::Input`] for a name that is not UTF-8, which a recipe cannot hold.
 pub(super) fn quoted(path: &Path) -> Result<String, CliError> {
     let text = path.to_str().ok_or_else(|| {
         let name = path.display();
-        CliError::input(format!("{name}: the name is not UTF-8, which a recipe is; rename it"))
+        CliError::input(format!("{name}: the name is not UTF-8, as a recipe must be; rename it"))
     })?;
     Ok(toml::Value::String(text.to_owned()).to_string())
 }

@@ -2,39 +2,37 @@
 
 use std::path::{Path, PathBuf};
 
-use polars::prelude::{AnyValue, DataFrame};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::provenance::Provenance;
-use crate::artifact::{
-    ArrayDataset, ArraysInfo, Attribute, Column, DatasetInfo, TableInfo, arrays_info, data_frame,
-    read_arrays, table_info,
-};
 use crate::cli::CliError;
 use crate::cli::output::{aligned, significant};
+use asperity::artifact::{
+    ArrayDataset, ArraysInfo, Attribute, Column, DatasetInfo, ExportTable, TableInfo, arrays_info,
+    read_arrays, table_info,
+};
+use asperity::text::visible_line;
 
 const FIRST_ROWS: usize = 5;
-/// polars hides the middle of wider tables.
+/// Columns side by side; more do not fit into a line.
 const COLUMNS_ABREAST: usize = 8;
 
 /// A table.
 #[derive(Debug, Serialize)]
 pub(super) struct Table {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     info: TableInfo,
     provenance: Option<Provenance>,
     first_rows: Vec<Map<String, Value>>,
-    #[serde(skip)]
-    frame: DataFrame,
 }
 
 /// A file of arrays.
 #[derive(Debug, Serialize)]
 pub(super) struct Arrays {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     info: ArraysInfo,
@@ -57,13 +55,11 @@ struct Statistics {
 impl Table {
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
         let info = table_info(path)?;
-        let frame = data_frame(path)?.head(Some(FIRST_ROWS));
         Ok(Self {
             path: path.to_path_buf(),
             info,
             provenance: Provenance::of(path)?,
-            first_rows: rows(&frame),
-            frame,
+            first_rows: ExportTable::read(path)?.first_rows(FIRST_ROWS)?,
         })
     }
 
@@ -82,11 +78,10 @@ impl Table {
         let columns: Vec<_> =
             info.columns.iter().map(|column| (column.name.as_str(), column_text(column))).collect();
         let mut text = format!("{}\ncolumns\n{}\nfirst rows\n", aligned(&lines), aligned(&columns));
-        for part in self.frame.columns().chunks(COLUMNS_ABREAST) {
-            let names = part.iter().map(|column| column.name().clone());
-            if let Ok(part) = self.frame.select(names) {
-                text += &format!("{part}\n");
-            }
+        for part in info.columns.chunks(COLUMNS_ABREAST) {
+            let names: Vec<&str> = part.iter().map(|column| column.name.as_str()).collect();
+            text += &side_by_side(&names, &self.first_rows);
+            text.push('\n');
         }
         text
     }
@@ -104,30 +99,27 @@ fn column_text(column: &Column) -> String {
     format!("{kind}{unit}{nullable}: {}", column.description)
 }
 
-fn rows(frame: &DataFrame) -> Vec<Map<String, Value>> {
-    let row = |index: usize| {
-        let cell = |column: &polars::prelude::Column| {
-            let value = column.get(index).map_or(Value::Null, |value| to_json(&value));
-            (column.name().to_string(), value)
-        };
-        frame.columns().iter().map(cell).collect()
+/// Some columns of the first rows under their names, to the right where they are numbers.
+fn side_by_side(names: &[&str], rows: &[Map<String, Value>]) -> String {
+    let cell = |row: &Map<String, Value>, name: &str| match row.get(name) {
+        None | Some(Value::Null) => "-".to_owned(),
+        Some(Value::String(text)) => visible_line(text).into_owned(),
+        Some(value) => value.to_string(),
     };
-    (0..frame.height()).map(row).collect()
-}
-
-/// The types that a table can have; see [`crate::artifact::ColumnType`].
-fn to_json(value: &AnyValue) -> Value {
-    match value {
-        AnyValue::Null => Value::Null,
-        AnyValue::Boolean(value) => (*value).into(),
-        AnyValue::UInt32(value) => (*value).into(),
-        AnyValue::UInt64(value) => (*value).into(),
-        AnyValue::Int64(value) => (*value).into(),
-        AnyValue::Float64(value) => (*value).into(),
-        AnyValue::String(text) => (*text).into(),
-        AnyValue::List(values) => values.iter().map(|value| to_json(&value)).collect(),
-        other => other.to_string().into(),
+    let is_text = |name: &str| rows.iter().any(|row| row.get(name).is_some_and(Value::is_string));
+    let mut lines = vec![String::new(); rows.len() + 1];
+    for name in names {
+        let cells: Vec<String> = std::iter::once((*name).to_owned())
+            .chain(rows.iter().map(|row| cell(row, name)))
+            .collect();
+        let width = cells.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
+        let text = is_text(name);
+        for (line, cell) in lines.iter_mut().zip(&cells) {
+            let cell = if text { format!("  {cell:<width$}") } else { format!("  {cell:>width$}") };
+            line.push_str(&cell);
+        }
     }
+    lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
 impl Arrays {

@@ -1,4 +1,4 @@
-//! Files of arrays are read in a process of their own: the HDF5 library may crash on one of which a byte is damaged.
+//! Files of arrays are read in a process of their own, since the HDF5 library may crash on a damaged file.
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -23,7 +23,7 @@ pub(super) fn inspect(path: &Path, json: bool) -> Result<String, CliError> {
     let output =
         command.stdin(Stdio::null()).output().map_err(|error| failed(error.to_string()))?;
     match output.status.code() {
-        // The library passes on texts as they are in the file.
+        // The library does not check the texts of the file.
         Some(0) => String::from_utf8(output.stdout).map_err(|_| {
             let path = path.display();
             CliError::input(format!("{path}: a text in it is not UTF-8, so the file is damaged"))
@@ -31,7 +31,7 @@ pub(super) fn inspect(path: &Path, json: bool) -> Result<String, CliError> {
         Some(1) => Err(CliError::failure(told(&output))),
         Some(2) => Err(CliError::input(told(&output))),
         _ => Err(CliError::input(format!(
-            "{}: cannot be read as HDF5 file of arrays: the HDF5 library crashed on it ({}), so the file is \
+            "{}: cannot be read as an HDF5 file of arrays: the HDF5 library crashed on it ({}), so the file is \
              damaged; copy it again, or compute it anew",
             path.display(),
             output.status
@@ -39,7 +39,7 @@ pub(super) fn inspect(path: &Path, json: bool) -> Result<String, CliError> {
     }
 }
 
-/// The message of the other process, without what every message begins with.
+/// The message of the other process, without the prefix of every message.
 fn told(output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr);
     let text = text.trim_end();

@@ -6,14 +6,14 @@ use serde::Serialize;
 
 use super::provenance::{State, inputs_text, read_manifest, stage_text};
 use super::{Finding, foreign};
-use crate::artifact::{Manifest, Output};
 use crate::cli::CliError;
 use crate::cli::output::{aligned, significant};
+use asperity::artifact::{Manifest, Output};
 
 /// A manifest on its own.
 #[derive(Debug, Serialize)]
 pub(super) struct ManifestFile {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     manifest: Manifest,
 }
@@ -21,7 +21,7 @@ pub(super) struct ManifestFile {
 /// The result of a stage.
 #[derive(Debug, Serialize)]
 pub(super) struct Stage {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     manifest: Manifest,
     /// In the order of the outputs of the manifest.
@@ -31,7 +31,7 @@ pub(super) struct Stage {
 /// The results of a run, by the name of the stage.
 #[derive(Debug, Serialize)]
 pub(super) struct Run {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     stages: Vec<Stage>,
 }
@@ -49,7 +49,7 @@ pub(super) fn read(path: &Path) -> Result<Finding, CliError> {
     let entries: Vec<_> = entries.collect::<Result<_, _>>().map_err(unreadable)?;
     let mut folders: Vec<PathBuf> = entries
         .into_iter()
-        // What a killed run left behind starts with a point.
+        // Names of what a killed run left behind start with a point.
         .filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'))
         .map(|entry| entry.path())
         .filter(|path| path.join(Manifest::FILE).exists())

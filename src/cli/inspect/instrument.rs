@@ -1,20 +1,21 @@
 //! Instrument files, which state their own units.
 
+use asperity::units::Units;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use crate::cli::output::{aligned, significant};
-use crate::scans::file::{Grid, OpenScan, Statistics};
+use asperity::scans::file::{Grid, OpenScan, Statistics};
 
 /// An instrument file, summarised.
 #[derive(Debug, Serialize)]
 pub(super) struct InstrumentFile {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: String,
-    /// How the format was told.
+    /// How the format was recognised.
     detected: String,
     /// Of a profile.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -68,7 +69,7 @@ impl InstrumentFile {
             }
         };
         let share = 100.0 * self.missing as f64 / points as f64;
-        let um = |metres: f64| significant(metres * 1e6) + " um";
+        let um = |metres: f64| significant(metres.m_to_um()) + " um";
         let spacing = match self.spacing_y_m {
             Some(y) => format!("{} along the rows, {} between them", um(self.spacing_m), um(y)),
             None => um(self.spacing_m),

@@ -18,14 +18,14 @@ use serde::Serialize;
 
 use super::CliError;
 use super::output::{json, print};
-use crate::scans::file::{
+use artifact::{Arrays, Table};
+use asperity::scans::file::{
     DETECTED_BY, Format as InstrumentFormat, Grid, OpenScan, ScanFile, foreign as named,
     open_channel, read_channel,
 };
-use crate::scans::spreadsheet::is_workbook;
-use crate::scans::text_shape::TextShape as Shape;
-use crate::scans::{Described, FileError, Source, read_bytes};
-use artifact::{Arrays, Table};
+use asperity::scans::spreadsheet::is_workbook;
+use asperity::scans::text_shape::TextShape as Shape;
+use asperity::scans::{Described, FileError, Source, read_bytes};
 use folder::{ManifestFile, Run, Stage};
 use instrument::InstrumentFile;
 use scan::Scan;
@@ -50,7 +50,7 @@ Examples:
 /// Show what a file or folder holds: schema, units, shape, provenance, first rows.
 ///
 /// PATH is an Arrow table, an HDF5 file of arrays, a manifest, a stored solve, the folder of a stage
-/// or of a run, a file of an instrument, a text scan, or a workbook (.xlsx) with one. The kind is found by looking into it; the name does not matter.
+/// or of a run, a file of an instrument, a text scan, or a workbook (.xlsx) with one. The content decides on the kind, not the name.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Inspect {
@@ -69,7 +69,7 @@ pub(super) struct Inspect {
     scan: ScanOptions,
 }
 
-/// What a path turned out to be.
+/// What was found at a path.
 #[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 enum Finding {
@@ -83,7 +83,7 @@ enum Finding {
     /// Instrument file of a height map.
     Map(InstrumentFile),
     Scan(Scan),
-    /// Text that no description goes with.
+    /// Text without a description.
     Text(TextShape),
     Solve(Solve),
 }
@@ -138,13 +138,13 @@ impl Inspect {
             Format::Binary => {
                 return Err(foreign(
                     path,
-                    "is none of Arrow table, HDF5 file, manifest and text; nor a known file of an instrument (SDF, X3P, Digital Surf, ERD, OpenCRG, Wyko ASCII, Gwyddion text); export it as X3P, SDF or text first if it is a scan",
+                    "is not an Arrow table, an HDF5 file, a manifest or text, nor a known file of an instrument (SDF, X3P, Digital Surf, ERD, OpenCRG, Wyko ASCII, Gwyddion text); export it as X3P, SDF or text first if it is a scan",
                 ));
             }
         })
     }
 
-    /// A scan where a description is given, else what the text looks like.
+    /// A scan if a description is given, else what the text looks like.
     fn text_scan(&self, path: &Path) -> Result<Finding, CliError> {
         if self.scan.are_given() {
             return Ok(match self.scan.read(path)? {
@@ -156,7 +156,7 @@ impl Inspect {
     }
 }
 
-/// Refuses a channel for what is no ERD file.
+/// Refuses a channel for a file that is not an ERD file.
 fn refuse_channel(
     path: &Path,
     channel: Option<usize>,
@@ -165,10 +165,13 @@ fn refuse_channel(
     if channel.is_none() || instrument == Some(InstrumentFormat::Erd) {
         return Ok(());
     }
-    Err(foreign(path, "is no ERD file, of which --erd-channel takes one channel: leave it out"))
+    Err(foreign(
+        path,
+        "is not an ERD file, for which --erd-channel chooses a channel: leave it out",
+    ))
 }
 
-/// Reads a file of an instrument, of an ERD file a chosen channel; `None` if it is none.
+/// Reads a file of an instrument, of an ERD file the chosen channel; `None` if it is another file.
 pub(super) fn read_instrument(
     path: &Path,
     channel: Option<usize>,
@@ -181,12 +184,12 @@ pub(super) fn read_instrument(
     Ok(read_channel(path, channel)?)
 }
 
-/// Reads the instrument file at `path`, of which some thousand heights at a time are in memory.
+/// Reads the instrument file at `path`, with some thousand heights in memory at a time.
 fn instrument_file(path: &Path, channel: Option<usize>) -> Result<Finding, CliError> {
     let wrong = |problem| CliError::input(FileError { file: path.display().to_string(), problem });
     let source = Source::open(path).map_err(|error| wrong(error.into()))?;
     let scan = open_channel(source, channel).map_err(wrong)?;
-    // The first bytes have told the format, and the file is read again.
+    // The format is known from the first bytes; here the file is read a second time.
     found(path, scan.ok_or_else(|| foreign(path, "changes while it is read"))?)
 }
 
@@ -264,7 +267,7 @@ impl Format {
 }
 
 impl Format {
-    /// What a file of the format is, where that is certainly no text.
+    /// What a file of the format is, if it is certainly not text.
     fn not_text(&self) -> Option<&'static str> {
         match self {
             Self::Arrow => Some("a table"),
@@ -276,15 +279,15 @@ impl Format {
     }
 }
 
-/// UTF-16 without a mark has the zeros of binary data.
+/// UTF-16 without a byte order mark has zeros, like binary data.
 fn is_utf_16(start: &[u8]) -> bool {
     Shape::of(start).is_some_and(|shape| shape.encoding.starts_with("utf-16"))
 }
 
 fn first_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    // To open a named pipe waits for a writer.
-    crate::files::admit(path, u64::MAX)?;
+    // Opening a named pipe waits for a writer.
+    asperity::files::admit(path, u64::MAX)?;
     File::open(path)?.take(DETECTED_BY as u64).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::artifact::{ArtifactError, Digest, Input, Manifest, Output};
 use crate::cli::CliError;
+use asperity::artifact::{ArtifactError, Digest, Input, Manifest, Output};
 
-/// Whether a file is the one that its manifest speaks of.
+/// Whether a file is the one that its manifest lists.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum State {
@@ -15,9 +15,9 @@ pub(super) enum State {
     Intact,
     /// Changed or damaged since.
     Changed,
-    /// Not there.
+    /// Missing.
     Missing,
-    /// There, and not readable.
+    /// Not readable.
     Unreadable,
 }
 
@@ -41,7 +41,7 @@ impl State {
     }
 }
 
-/// What the manifest beside a file says of it.
+/// What the manifest beside a file says about it.
 #[derive(Debug, Serialize)]
 pub(super) struct Provenance {
     stage: String,
@@ -53,7 +53,7 @@ pub(super) struct Provenance {
 }
 
 impl Provenance {
-    /// None if there is no manifest beside the file or it does not list it.
+    /// `None` if there is no manifest beside the file or it does not list the file.
     ///
     /// # Errors
     /// [`CliError::Input`] for a manifest that cannot be read.
@@ -117,16 +117,16 @@ pub(super) fn read_manifest(path: &Path) -> Result<Manifest, CliError> {
         version: u32,
     }
     let unreadable = |error: serde_json::Error| {
-        // The file may be anyone's: nothing is said of deleting it.
+        // The file may belong to anyone, so the message does not suggest to delete it.
         CliError::input(format!(
-            "{} is JSON, but no readable manifest or stored solve ({error}): it is truncated, \
+            "{} is JSON, but cannot be read as a manifest or a stored solve ({error}): it is truncated, \
              damaged or not made by asperity",
             path.display()
         ))
     };
-    let bytes = crate::files::read(path, crate::files::LARGEST_NUMBERS)
+    let bytes = asperity::files::read(path, asperity::files::LARGEST_NUMBERS)
         .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
-    // Another kind or version may have other fields, so the header is judged alone.
+    // Another kind or version may have other fields, so only the header is checked.
     let header: Header = serde_json::from_slice(&bytes).map_err(unreadable)?;
     let path = path.to_path_buf();
     if header.schema != Manifest::SCHEMA {

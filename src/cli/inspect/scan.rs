@@ -1,5 +1,6 @@
 //! Text scans, described by options.
 
+use asperity::units::Units;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -9,13 +10,13 @@ use serde::Serialize;
 use super::foreign;
 use crate::cli::output::{aligned, significant};
 use crate::cli::{CliError, values};
-use crate::scans::description::{Column, DecimalMark, LengthUnit, Separator};
-use crate::scans::spreadsheet::is_workbook;
-use crate::scans::text_shape::TextShape;
-use crate::scans::{Described, TextFormat, read_bytes, read_described};
-use crate::surface::RawScan;
-use crate::surface::faults::merge_repeated;
-use crate::surface::resample::place_on_grid;
+use asperity::scans::description::{Column, DecimalMark, LengthUnit, Separator};
+use asperity::scans::spreadsheet::is_workbook;
+use asperity::scans::text_shape::TextShape;
+use asperity::scans::{Described, TextFormat, read_bytes, read_described};
+use asperity::surface::RawScan;
+use asperity::surface::faults::merge_repeated;
+use asperity::surface::resample::place_on_grid;
 use statrs::statistics::{Data, OrderStatistics};
 
 const FIRST_POINTS: usize = 5;
@@ -30,7 +31,7 @@ pub(in crate::cli) struct ScanOptions {
     /// Sheet of a workbook (.xlsx), by name or number (the first is 1); the first if not given.
     #[arg(long, value_name = "SHEET", value_parser = values::column)]
     sheet: Option<Column>,
-    /// Between the cells: tab, comma, semicolon, whitespace or one character.
+    /// Separator of the cells: tab, comma, semicolon, whitespace or one character.
     #[arg(long, value_parser = values::separator)]
     separator: Option<Separator>,
     /// Column of the positions, by name or number (the first is 1).
@@ -39,7 +40,7 @@ pub(in crate::cli) struct ScanOptions {
     /// Unit of the positions: nm, um, mm or m.
     #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
     x_unit: Option<LengthUnit>,
-    /// Distance of neighbouring points in um, for a file of heights only, in place of --x-column.
+    /// Distance of neighbouring points in um, for a file of heights only, instead of --x-column.
     #[arg(long, value_name = "UM", value_parser = values::positive, allow_negative_numbers = true)]
     x_spacing_um: Option<f64>,
     /// Column of the positions across the lines of a height map, by name or number (the first is 1).
@@ -57,7 +58,7 @@ pub(in crate::cli) struct ScanOptions {
     /// The file holds depths, which grow away from the rubber.
     #[arg(long)]
     invert_z: bool,
-    /// No line of column names stands before the first point.
+    /// There is no line of column names before the first point.
     #[arg(long)]
     no_header: bool,
     /// Decimal mark, `.` or `,`.
@@ -126,7 +127,7 @@ impl ScanOptions {
         !self.given().is_empty()
     }
 
-    /// Refuses options for the file at `path`, which is no text but `what`.
+    /// Refuses options of texts for the file at `path`, which is `what`.
     ///
     /// # Errors
     /// [`CliError::Input`] that names them.
@@ -136,11 +137,13 @@ impl ScanOptions {
             return Ok(());
         }
         let turn = match self.invert_z {
-            true => "; a recipe turns files of instruments by ingest.invert_instrument_heights",
+            true => {
+                "; in a recipe, ingest.invert_instrument_heights turns the heights of instrument files"
+            }
             false => "",
         };
         let given = given.join(", ");
-        let problem = format!("is {what}, no text: leave out {given}{turn}");
+        let problem = format!("is {what}, not text: leave out {given}{turn}");
         Err(foreign(path, &problem))
     }
 
@@ -151,7 +154,7 @@ impl ScanOptions {
     pub(in crate::cli) fn read(&self, path: &Path) -> Result<Described, CliError> {
         let format = self.format().map_err(|needed| {
             let problem = format!(
-                "is no artifact but text; to read it as a scan, give {needed} as well (units are never \
+                "is text, not an artifact; to read it as a scan, give {needed} as well (units are never \
                  guessed); without options, inspect tells what it looks like"
             );
             foreign(path, &problem)
@@ -159,7 +162,7 @@ impl ScanOptions {
         Ok(read_described(path, &format)?)
     }
 
-    /// What was read, and where the options contradict the names of the columns.
+    /// The scan, and contradictions between the options and the names of the columns.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -167,7 +170,7 @@ impl ScanOptions {
         Ok(Scan { contradictions: self.contradictions(path)?, ..Scan::of(path, scan) })
     }
 
-    /// Where the options contradict the names of the columns.
+    /// Contradictions between the options and the names of the columns.
     ///
     /// # Errors
     /// [`CliError::Input`].
@@ -186,7 +189,7 @@ impl ScanOptions {
     }
 
     /// # Errors
-    /// The options that are needed and not given.
+    /// The required options that are not given.
     pub(in crate::cli) fn format(&self) -> Result<TextFormat, String> {
         let spaced = self.x_spacing_um.is_some();
         let needed: Vec<&str> = [
@@ -233,7 +236,7 @@ impl ScanOptions {
 /// A raw scan, summarised.
 #[derive(Debug, Serialize)]
 pub(super) struct Scan {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: &'static str,
     pub(super) points: usize,
@@ -253,9 +256,9 @@ pub(super) struct Scan {
     mean_um: f64,
     /// Root of the mean square about the mean, before form and tilt are removed.
     rms_um: f64,
-    /// Points at the position of the point before.
+    /// Number of points at the position of the point before.
     repeated: usize,
-    /// Where the options contradict the names of the columns.
+    /// Contradictions between the options and the names of the columns.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     contradictions: Vec<String>,
     /// x in mm and z in um; absent where missing.
@@ -263,14 +266,18 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    /// The readers give two points or more and at least one height.
+    /// The readers return two points or more and at least one height.
     pub(super) fn of(path: &Path, scan: RawScan) -> Self {
         let (merged, repeated) = merge_repeated(&scan);
         let fitted = place_on_grid(&merged).ok().map(|(grid, _)| grid.spacing);
         let RawScan { positions, heights, .. } = scan;
-        let steps: Vec<f64> = positions.windows(2).map(|pair| (pair[1] - pair[0]) * 1e6).collect();
-        let present: Vec<f64> =
-            heights.iter().filter(|height| !height.is_nan()).map(|height| height * 1e6).collect();
+        let steps: Vec<f64> =
+            positions.windows(2).map(|pair| (pair[1] - pair[0]).m_to_um()).collect();
+        let present: Vec<f64> = heights
+            .iter()
+            .filter(|height| !height.is_nan())
+            .map(|height| height.m_to_um())
+            .collect();
         let mean =
             |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / present.len() as f64;
         let mean_um = mean(&mut present.iter().copied());
@@ -279,21 +286,21 @@ impl Scan {
         let highest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let (smallest_spacing_um, largest_spacing_um) = (lowest(&steps), highest(&steps));
         let median_spacing_um = Data::new(steps).median();
-        let point = |(x, z): (&f64, &f64)| (x * 1e3, (!z.is_nan()).then_some(z * 1e6));
+        let point = |(x, z): (&f64, &f64)| (x.m_to_mm(), (!z.is_nan()).then_some(z.m_to_um()));
         Self {
             path: path.to_path_buf(),
             format: "text",
             points: heights.len(),
             missing: heights.len() - present.len(),
-            start_mm: lowest(&positions) * 1e3,
-            end_mm: highest(&positions) * 1e3,
+            start_mm: lowest(&positions).m_to_mm(),
+            end_mm: highest(&positions).m_to_mm(),
             smallest_spacing_um,
             largest_spacing_um,
             median_spacing_um,
-            // Positions that make no grid have no line through them.
-            spacing_m: fitted.unwrap_or(median_spacing_um / 1e6),
-            mean_m: mean_um / 1e6,
-            std_m: rms_um / 1e6,
+            // Repeated positions may leave no line through them.
+            spacing_m: fitted.unwrap_or(median_spacing_um.um_to_m()),
+            mean_m: mean_um.um_to_m(),
+            std_m: rms_um.um_to_m(),
             lowest_um: lowest(&present),
             highest_um: highest(&present),
             mean_um,
@@ -315,7 +322,7 @@ impl Scan {
                 "spacing",
                 format!(
                     "{} um by least squares, median {} um, {} um",
-                    significant(self.spacing_m * 1e6),
+                    significant(self.spacing_m.m_to_um()),
                     significant(self.median_spacing_um),
                     range(self.smallest_spacing_um, self.largest_spacing_um)
                 ),

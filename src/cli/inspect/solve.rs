@@ -4,21 +4,21 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::artifact::{SOLVE_SCHEMA, StoredSolve, read_stored_solve};
 use crate::cli::CliError;
 use crate::cli::output::aligned;
+use asperity::artifact::{SOLVE_SCHEMA, StoredSolve, read_stored_solve};
 
-/// One result of a sweep, kept so that a stopped run goes on from it.
+/// A stored solve, from which an interrupted run continues.
 #[derive(Debug, Serialize)]
 pub(super) struct Solve {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     #[serde(flatten)]
     stored: StoredSolve,
 }
 
 impl Solve {
-    /// Whether a file of JSON says that it is one.
+    /// Whether a JSON file states that it is a stored solve.
     pub(super) fn is_in(path: &Path) -> bool {
         #[derive(Deserialize)]
         struct Header {

@@ -1,5 +1,6 @@
-//! Text without a description: what it looks like, and what would describe it.
+//! Text without a description: what it looks like, and a proposal for a description.
 
+use asperity::units::Units;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -8,52 +9,52 @@ use super::foreign;
 use super::scan::Scan;
 use crate::cli::CliError;
 use crate::cli::output::{aligned, significant};
-use crate::scans::description::{DecimalMark, LengthUnit, Separator};
-use crate::scans::file::{Grid, ScanFile};
-use crate::scans::spreadsheet;
-use crate::scans::text_shape::{self, separator_text};
-use crate::scans::{Described, parse_described};
+use asperity::scans::description::{DecimalMark, LengthUnit, Separator};
+use asperity::scans::file::{Grid, ScanFile};
+use asperity::scans::spreadsheet;
+use asperity::scans::text_shape::{self, separator_text};
+use asperity::scans::{Described, parse_described};
 
-/// More columns than a file of profiles has; without names they are the rows of a height map.
+/// Files with more columns than this, without names, are height maps, not profiles.
 const MOST_COLUMNS: usize = 12;
 
 /// What a text looks like.
 #[derive(Debug, Serialize)]
 pub(super) struct TextShape {
-    #[serde(with = "crate::files::name::path")]
+    #[serde(with = "asperity::files::name::path")]
     path: PathBuf,
     format: &'static str,
-    /// Of a workbook, where it is not the first.
+    /// Sheet of a workbook, if it is not the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     sheet: Option<String>,
     encoding: &'static str,
     separator: Separator,
     decimal_mark: DecimalMark,
     comment: Option<char>,
-    /// Lines before the names of the columns or the points.
+    /// Number of lines before the names of the columns or the points.
     skip_lines: usize,
     skip_until: Option<String>,
-    /// Start of the line behind the points.
+    /// Start of the line after the points.
     #[serde(skip_serializing_if = "Option::is_none")]
     stop_at: Option<String>,
     header: bool,
     columns: Vec<Column>,
     points: usize,
-    /// What the proposed description reads; absent where it cannot.
+    /// What is read with the proposed description; absent if it cannot be read.
     #[serde(flatten)]
     read: Option<Statistics>,
-    /// Why it cannot.
+    /// Why it cannot be read.
     #[serde(skip_serializing_if = "Option::is_none")]
     unread: Option<String>,
     /// Cells proposed as marks of missing heights.
     missing_marks: Vec<String>,
     /// Lines before the points that state a unit.
     stated: Vec<String>,
-    /// The section of a recipe that would read it.
+    /// The section of a recipe for this file.
     recipe_section: String,
 }
 
-/// Numbers under the proposed description, to be checked before they are believed.
+/// Numbers as read with the proposed description, to be checked.
 #[derive(Debug, Serialize)]
 struct Statistics {
     missing: usize,
@@ -82,12 +83,12 @@ impl TextShape {
     /// # Errors
     /// [`CliError::Input`] for a file that cannot be read or holds no columns of numbers.
     pub(super) fn read(path: &Path) -> Result<Self, CliError> {
-        let bytes = crate::scans::read_bytes(path)
+        let bytes = asperity::scans::read_bytes(path)
             .map_err(|error| CliError::input(format!("cannot read {}: {error}", path.display())))?;
         let is_workbook = spreadsheet::is_workbook(&bytes);
         let what = match is_workbook {
-            true => "is a workbook without rows of numbers: no scan",
-            false => "is text without lines of numbers: no scan",
+            true => "is a workbook without rows of numbers, not a scan",
+            false => "is text without lines of numbers, not a scan",
         };
         let shape = text_shape::TextShape::of(&bytes)
             .ok_or_else(|| problem_of_workbook(path, &bytes, what))?;
@@ -153,11 +154,11 @@ impl TextShape {
         };
         let points = match &self.stop_at {
             Some(footer) => {
-                format!("{}, behind them a line that begins with `{footer}`", self.points)
+                format!("{}, followed by a line that begins with `{footer}`", self.points)
             }
             None => self.points.to_string(),
         };
-        let um = |metres: f64| significant(metres * 1e6) + " um";
+        let um = |metres: f64| significant(metres.m_to_um()) + " um";
         let numbers = match (&self.read, &self.unread) {
             (Some(read), _) => format!(
                 "{}{} missing, spacing {}, mean of z {}, rms of z {} about the mean",
@@ -207,7 +208,7 @@ impl TextShape {
     }
 }
 
-/// What the proposed description reads of the file, or why it does not.
+/// What is read of the file with the proposed description, or why nothing is.
 fn statistics(
     path: &Path,
     bytes: &[u8],
@@ -246,7 +247,7 @@ fn of_map(map: &ScanFile) -> Statistics {
     Statistics { missing, shape, spacing_m, spacing_y_m, mean_m, std_m }
 }
 
-/// What to do with rows of a height map that state neither spacing nor unit.
+/// What to do with the rows of a height map without spacing and unit.
 pub(in crate::cli) fn matrix_problem(shape: &text_shape::TextShape) -> String {
     format!(
         "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, SDF, as text with \
@@ -255,7 +256,7 @@ pub(in crate::cli) fn matrix_problem(shape: &text_shape::TextShape) -> String {
     )
 }
 
-/// Why nothing is seen in a file: a workbook that cannot be opened says more.
+/// Why no numbers were found in a file: for a workbook that cannot be opened, the reason.
 fn problem_of_workbook(path: &Path, bytes: &[u8], what: &str) -> CliError {
     match spreadsheet::is_workbook(bytes).then(|| spreadsheet::Book::open(bytes)) {
         Some(Err(error)) => CliError::input(format!("{}: {error}", path.display())),

@@ -1,11 +1,12 @@
 //! What a fit prints: a table, or JSON.
 
 use crate::cli::output::{aligned, significant};
-use crate::rubber::fit::{
+use asperity::rubber::fit::{
     Candidate, Estimate, FittedLaw, FittedTerm, FittedVertical, LeftOut, MasterCurve, Misfit,
     ShiftFactor,
 };
-use crate::rubber::{FrequencyRange, ShiftLaw, VerticalShift};
+use asperity::rubber::{FrequencyRange, ShiftLaw, VerticalShift};
+use asperity::units::Units;
 use serde::Serialize;
 
 /// What is printed; the names are the keys of the JSON object, in SI but for units in names.
@@ -51,16 +52,18 @@ impl<'a> Summary<'a> {
             "{:<12}  {:<34}  relaxation time / s\n",
             "term", "modulus / MPa (95 % interval)"
         );
-        let equilibrium = interval(&self.equilibrium_modulus, 1e6);
+        let equilibrium = interval(&self.equilibrium_modulus, Units::pa_to_mpa);
         text += &format!("{:<12}  {equilibrium}\n", "equilibrium");
         for (k, term) in self.terms.iter().enumerate() {
-            let (modulus, time) =
-                (interval(&term.modulus, 1e6), interval(&term.relaxation_time, 1.0));
+            let (modulus, time) = (
+                interval(&term.modulus, Units::pa_to_mpa),
+                interval(&term.relaxation_time, |time| time),
+            );
             text += &format!("{:<12}  {modulus:<34}  {time}\n", k + 1);
         }
         text += "\n";
         let percent = |value: f64| format!("{} %", significant(100.0 * value));
-        let of = |d: &crate::rubber::fit::Deviation| {
+        let of = |d: &asperity::rubber::fit::Deviation| {
             format!("{} rms, {} at most", percent(d.rms), percent(d.largest))
         };
         let range = self.measured;
@@ -106,8 +109,8 @@ impl<'a> Summary<'a> {
     }
 }
 
-fn interval(estimate: &Estimate, unit: f64) -> String {
-    let number = |value: f64| significant(value / unit);
+fn interval(estimate: &Estimate, unit: fn(f64) -> f64) -> String {
+    let number = |value: f64| significant(unit(value));
     match estimate.confidence_95 {
         Some([low, high]) => {
             format!("{} ({} to {})", number(estimate.value), number(low), number(high))

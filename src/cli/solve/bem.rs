@@ -1,5 +1,6 @@
 //! `asperity solve bem`: the steady sliding contact on the linear viscoelastic half-space.
 
+use asperity::units::Units;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -13,23 +14,24 @@ use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
 use crate::cli::{CliError, values};
-use crate::contact::refine::{
+use asperity::contact::refine::{
     HALF_SPACE, OnGrid, RefineError, Refined, Refinement, Watched, on_grid,
 };
-use crate::contact::sliding::POINTS_RANGE;
-use crate::contact::{ContactError, ContactSolution, SlidingContact};
-use crate::rubber::Rubber;
+use asperity::contact::sliding::POINTS_RANGE;
+use asperity::contact::{ContactError, ContactSolution, SlidingContact};
+use asperity::rubber::Rubber;
 
-/// Relative to the wanted fraction; far below what any grid resolves, at the cost of a solve or two.
+/// Relative tolerance of the contact area of --area: far below what any grid resolves, at the cost of a solve
+/// or two.
 const AREA_TOLERANCE: f64 = 1e-6;
 
-/// Points on a contact spot below which area and friction are those of the grid: of one sine they
-/// are then off by a fifth and more.
+/// Fewest points on a contact spot for reliable area and friction: with fewer, those of one sine are off by a
+/// fifth and more.
 const RESOLVED_SPOT: f64 = 4.0;
 
-/// Accuracy of friction without --tolerance.
+/// Default of --tolerance.
 const DEFAULT_TOLERANCE: f64 = 1e-3;
-/// Of the coarsest grid; three grids make an estimate.
+/// Points of the coarsest grid; an estimate takes three grids.
 const FIRST_POINTS_PER_WAVE: usize = 8;
 /// Seconds for a contact.
 const MOST_POINTS: usize = 1 << 22;
@@ -54,7 +56,7 @@ Exit codes: 0 solved, 1 not converged or not written, 2 bad input.";
 /// Solve the steady sliding contact of a rubber half-space with a periodic profile.
 ///
 /// The profile is a sum of sines (--wave) or a file (--profile). The rubber slides over it at
-/// --speed, pressed on with the mean --pressure, or as strongly as gives the contact --area.
+/// --speed under the mean --pressure, or under the pressure that gives the contact area --area.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 #[command(group(ArgGroup::new("load").required(true).args(["pressure", "area"])))]
@@ -67,7 +69,7 @@ pub(in crate::cli) struct Bem {
     /// Mean pressure in MPa.
     #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
     pressure: Option<f64>,
-    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure. Where the grid has
+    /// Contact area as a fraction of the nominal area, between 0 and 1, instead of --pressure. If the grid has
     /// no such area, the nearest one is taken if it is within its own estimated error.
     #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
     area: Option<f64>,
@@ -112,7 +114,7 @@ impl Bem {
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
-        for warning in material.warnings(&shape, self.speed / 1e3) {
+        for warning in material.warnings(&shape, self.speed.mm_to_m()) {
             note(quiet, format_args!("warning: {warning}"));
         }
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;
@@ -130,7 +132,7 @@ impl Bem {
             note(
                 quiet,
                 format_args!(
-                    "warning: a contact spot is {} grid points wide on average, too few for reliable figures: give \
+                    "warning: a contact spot is {} grid points wide on average, too few for reliable numbers: give \
                      more points or more pressure",
                     significant(spot)
                 ),
@@ -151,7 +153,7 @@ impl Bem {
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
 
-    /// The contact, on a grid that is fine enough or on the given one.
+    /// The contact, on a sufficiently fine grid or on the given one.
     fn solve(&self, rubber: &Rubber, shape: &Shape) -> Result<Refined<ContactSolution>, CliError> {
         let solve = |points: usize| self.solve_on(rubber, shape, points);
         let given =
@@ -191,14 +193,15 @@ impl Bem {
         points: usize,
     ) -> Result<ContactSolution, CliError> {
         let heights = shape.heights_on(points);
-        let mut contact = SlidingContact::new(rubber, self.speed / 1e3, shape.period, &heights)?;
+        let mut contact =
+            SlidingContact::new(rubber, self.speed.mm_to_m(), shape.period, &heights)?;
         if self.area.is_some() && contact.height_range() == 0.0 {
             return Err(CliError::input(
-                "the profile is flat and touches everywhere at any pressure: give --pressure",
+                "the profile is flat and in full contact at any pressure: give --pressure",
             ));
         }
         match (self.pressure, self.area) {
-            (Some(pressure_mpa), _) => Ok(contact.solve(pressure_mpa * 1e6)?),
+            (Some(pressure_mpa), _) => Ok(contact.solve(pressure_mpa.mpa_to_pa())?),
             (None, Some(fraction)) => {
                 let nearest = contact.solve_near_area(fraction, AREA_TOLERANCE)?;
                 let distance = (nearest.contact_area_fraction - fraction).abs();
@@ -212,8 +215,7 @@ impl Bem {
         }
     }
 
-    /// How far the contact area is from the one asked for, where the grid has none that is nearer. An area within
-    /// its own estimated error cannot be told from the one asked for.
+    /// Warns if the nearest contact area of the grid differs from the one asked for by more than its estimated error.
     fn distance_of_area(
         &self,
         refined: &Refined<ContactSolution>,
@@ -247,8 +249,8 @@ impl Summary {
             error_estimate: refined.error.map(ErrorEstimate::of_grid),
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
-            pressure_mpa: solution.mean_pressure / 1e6,
+            mean_separation_mm: solution.mean_separation.m_to_mm(),
+            pressure_mpa: solution.mean_pressure.pa_to_mpa(),
             residual: solution.residual,
             iterations: solution.iterations,
             grid_points: solution.pressure.len(),
@@ -256,7 +258,7 @@ impl Summary {
         }
     }
 
-    /// Lengths or moduli far from any road overflow; what is no number is no result.
+    /// Refuses a result that is not finite: lengths or moduli far from those of any road overflow.
     fn check(&self) -> Result<(), CliError> {
         let results = [
             self.friction_coefficient,
@@ -293,7 +295,7 @@ impl Summary {
     }
 }
 
-/// The refusal of a contact area that the grid does not have.
+/// The error for a contact area that the grid does not have.
 fn not_reached(wanted: f64, nearest: &ContactSolution) -> CliError {
     CliError::from(ContactError::AreaNotReached {
         wanted,
@@ -327,13 +329,13 @@ fn write_fields(
     let points = solution.pressure.len();
     let heights = shape.heights_on(points);
     let mean = heights.iter().sum::<f64>() / points as f64;
-    let spacing_mm = shape.period * 1e3 / points as f64;
+    let spacing_mm = shape.period.m_to_mm() / points as f64;
     writeln!(out, "x_mm,height_mm,pressure_mpa,separation_mm")?;
     for (i, height) in heights.iter().enumerate() {
         let x_mm = i as f64 * spacing_mm;
-        let height_mm = (height - mean) * 1e3;
-        let pressure_mpa = solution.pressure[i] / 1e6;
-        let separation_mm = solution.separation[i] * 1e3;
+        let height_mm = (height - mean).m_to_mm();
+        let pressure_mpa = solution.pressure[i].pa_to_mpa();
+        let separation_mm = solution.separation[i].m_to_mm();
         writeln!(out, "{x_mm},{height_mm:e},{pressure_mpa:e},{separation_mm:e}")?;
     }
     Ok(())

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::contact::refine::GridError;
+use asperity::contact::refine::GridError;
 
-/// Estimated errors, absolute. Those of the friction coefficient first; a single solve at a given
-/// load has no realisations and interpolates nothing.
+/// Estimated absolute errors, those of the friction coefficient first. For a single solve at a given load,
+/// those of realisations and interpolation are zero.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct ErrorEstimate {
     /// Of friction by the grid or mesh, from coarser ones.

@@ -1,5 +1,6 @@
 //! `asperity solve fem`: sliding contact at finite deformation.
 
+use asperity::units::Units;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -13,19 +14,21 @@ use super::shape::{Shape, ShapeOptions};
 use crate::cli::output::{json, note, print, refuse_existing, write_file};
 use crate::cli::progress::Spinner;
 use crate::cli::{CliError, threads, values};
-use crate::contact::SlidingContact;
-use crate::contact::refine::{FINITE_ELEMENTS, OnGrid, RefineError, Refinement, Watched, on_grid};
-use crate::error_kind::HasKind;
-use crate::fem::error::{FemError, PathEnd};
-use crate::fem::profile::RigidProfile;
-use crate::fem::steady::solution::SteadySolution;
-use crate::fem::steady::{BlockOptions, SteadyContact};
-use crate::fem::transient::{FlowRule, TransientContact, TransientOptions};
-use crate::rubber::{Rheology, Rubber};
+use asperity::contact::SlidingContact;
+use asperity::contact::refine::{
+    FINITE_ELEMENTS, OnGrid, RefineError, Refinement, Watched, on_grid,
+};
+use asperity::error_kind::HasKind;
+use asperity::fem::error::{FemError, PathEnd};
+use asperity::fem::profile::RigidProfile;
+use asperity::fem::steady::solution::SteadySolution;
+use asperity::fem::steady::{BlockOptions, SteadyContact};
+use asperity::fem::transient::{FlowRule, TransientContact, TransientOptions};
+use asperity::rubber::{Rheology, Rubber};
 
-/// Relative to the wanted fraction; below what a mesh resolves.
+/// Relative tolerance of the contact area of --area; below what a mesh resolves.
 const AREA_TOLERANCE: f64 = 1e-4;
-/// Periods of a drag without --drag-periods, those of the thesis.
+/// Default of --drag-periods, that of the thesis.
 const DEFAULT_DRAG_PERIODS: usize = 12;
 
 const EXAMPLES: &str = "\
@@ -57,7 +60,7 @@ pub(in crate::cli) struct Fem {
     /// Mean pressure in MPa.
     #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
     pressure: Option<f64>,
-    /// Contact area as a fraction of the nominal area, between 0 and 1, in place of --pressure;
+    /// Contact area as a fraction of the nominal area, between 0 and 1, instead of --pressure;
     /// steady route only.
     #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
     area: Option<f64>,
@@ -149,7 +152,7 @@ impl Fem {
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
-        for warning in material.warnings(&shape, self.speed / 1e3) {
+        for warning in material.warnings(&shape, self.speed.mm_to_m()) {
             note(quiet, format_args!("warning: {warning}"));
         }
         let profile = rigid_profile(&shape);
@@ -164,12 +167,12 @@ impl Fem {
         print(&if self.json { json(&summary)? } else { summary.table() })
     }
 
-    /// Options that contradict each other, before anything is computed.
+    /// Refuses options that contradict each other.
     fn check(&self) -> Result<(), CliError> {
         let transient = self.route == Route::Transient;
         if self.shape.points.is_some() && self.shape.profile.is_none() {
             return Err(CliError::input(
-                "--points is the grid of solve bem: give --columns, the sines are used as they are",
+                "--points is the grid of solve bem: give --columns; sines need no grid here",
             ));
         }
         if transient && self.area.is_some() {
@@ -194,7 +197,7 @@ impl Fem {
         ] {
             if given && !transient {
                 return Err(CliError::input(format!(
-                    "{option} needs --route transient: the steady field has no time"
+                    "{option} needs --route transient: the steady route has no time steps"
                 )));
             }
         }
@@ -210,7 +213,7 @@ impl Fem {
         refuse_existing(self.series.as_deref(), self.force)
     }
 
-    /// The block of the options, on the usual number of columns if none is given.
+    /// The block of the options, with the default number of columns if none is given.
     fn block(&self, profile: &RigidProfile) -> Result<BlockOptions, CliError> {
         let columns = match (self.columns, self.route) {
             (Some(columns), _) => columns,
@@ -283,11 +286,11 @@ impl Fem {
         profile: &RigidProfile,
         options: BlockOptions,
     ) -> Result<SteadySolution, CliError> {
-        let (rheology, speed) = (self.rheology.into(), self.speed / 1e3);
+        let (rheology, speed) = (self.rheology.into(), self.speed.mm_to_m());
         let mut contact = SteadyContact::new(rubber, rheology, speed, profile.clone(), options)?;
         match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => {
-                contact.solve(pressure_mpa * 1e6).map_err(|error| with_advice("", error))
+                contact.solve(pressure_mpa.mpa_to_pa()).map_err(|error| with_advice("", error))
             }
             (None, Some(fraction)) => contact
                 .solve_for_area(fraction, AREA_TOLERANCE)
@@ -307,7 +310,7 @@ impl Fem {
         let Some(pressure_mpa) = self.pressure else {
             return Err(CliError::input("give --pressure"));
         };
-        let (pressure, speed) = (pressure_mpa * 1e6, self.speed / 1e3);
+        let (pressure, speed) = (pressure_mpa.mpa_to_pa(), self.speed.mm_to_m());
         let start = Instant::now();
         let mut mesh = options.mesh(profile.period());
         // The shear that the half-space's friction would give; half of it keeps elements usable
@@ -350,7 +353,7 @@ impl Fem {
     }
 }
 
-/// The error with the options that may help.
+/// The error with a hint at options that may help.
 fn with_advice(of: &str, error: FemError) -> CliError {
     let advice = match &error {
         FemError::Rubber(_) | FemError::OutOfRange { .. } | FemError::Interrupted => "",

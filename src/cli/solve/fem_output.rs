@@ -1,14 +1,15 @@
 //! What `asperity solve fem` prints and writes.
 
+use asperity::units::Units;
 use std::io::Write;
 
 use serde::Serialize;
 
 use super::error_estimate::ErrorEstimate;
 use crate::cli::output::{aligned, significant};
-use crate::contact::refine::Refined;
-use crate::fem::steady::solution::SteadySolution;
-use crate::fem::transient::{Sample, TransientSolution};
+use asperity::contact::refine::Refined;
+use asperity::fem::steady::solution::SteadySolution;
+use asperity::fem::transient::{Sample, TransientSolution};
 
 /// What is printed; the names are the keys of the JSON object, those of `solve bem` first.
 #[derive(Debug, Serialize)]
@@ -17,19 +18,19 @@ pub(super) struct Summary {
     contact_area_fraction: f64,
     mean_separation_mm: f64,
     pressure_mpa: f64,
-    /// None for the transient route, whose time steps have one each.
+    /// `None` for the transient route, where each time step has its own.
     #[serde(skip_serializing_if = "Option::is_none")]
     residual: Option<f64>,
     iterations: usize,
     grid_points: usize,
     seconds: f64,
     rows: usize,
-    /// Friction from the heat of the branches (steady), or from the work less the stored energy.
+    /// Friction from the heat of the branches (steady), or from the work minus the stored energy.
     hysteretic_friction: f64,
     /// Largest less smallest friction of the averaged periods; transient route only.
     #[serde(skip_serializing_if = "Option::is_none")]
     friction_oscillation: Option<f64>,
-    /// None where coarser meshes do not resolve the contact, and for the transient route.
+    /// `None` if coarser meshes do not resolve the contact, and for the transient route.
     error_estimate: Option<ErrorEstimate>,
 }
 
@@ -40,8 +41,8 @@ impl Summary {
             error_estimate: refined.error.map(ErrorEstimate::of_grid),
             friction_coefficient: solution.friction_coefficient,
             contact_area_fraction: solution.contact_area_fraction,
-            mean_separation_mm: solution.mean_separation * 1e3,
-            pressure_mpa: solution.mean_pressure / 1e6,
+            mean_separation_mm: solution.mean_separation.m_to_mm(),
+            pressure_mpa: solution.mean_pressure.pa_to_mpa(),
             residual: Some(solution.residual),
             iterations: solution.newton_steps,
             grid_points: solution.elements[0],
@@ -63,8 +64,8 @@ impl Summary {
         Self {
             friction_coefficient: friction.mean,
             contact_area_fraction: solution.contact_area_fraction.mean,
-            mean_separation_mm: solution.mean_separation.mean * 1e3,
-            pressure_mpa: pressure / 1e6,
+            mean_separation_mm: solution.mean_separation.mean.m_to_mm(),
+            pressure_mpa: pressure.pa_to_mpa(),
             residual: None,
             iterations: solution.counts.iterations.newton,
             grid_points: elements[0],
@@ -110,8 +111,8 @@ impl Summary {
 pub(super) fn write_fields(out: &mut dyn Write, solution: &SteadySolution) -> std::io::Result<()> {
     writeln!(out, "x_mm,height_mm,pressure_mpa,separation_mm")?;
     for node in &solution.nodes {
-        let [x_mm, height_mm] = [node.x * 1e3, node.profile_height * 1e3];
-        let [pressure_mpa, separation_mm] = [node.pressure / 1e6, node.separation * 1e3];
+        let [x_mm, height_mm] = [node.x.m_to_mm(), node.profile_height.m_to_mm()];
+        let [pressure_mpa, separation_mm] = [node.pressure.pa_to_mpa(), node.separation.m_to_mm()];
         writeln!(out, "{x_mm},{height_mm:e},{pressure_mpa:e},{separation_mm:e}")?;
     }
     Ok(())
@@ -127,11 +128,11 @@ pub(super) fn write_series(out: &mut dyn Write, samples: &[Sample]) -> std::io::
             out,
             "{:e},{},{},{},{},{}",
             sample.time,
-            sample.pressure / 1e6,
-            sample.displacement * 1e3,
+            sample.pressure.pa_to_mpa(),
+            sample.displacement.m_to_mm(),
             sample.friction_coefficient,
             sample.contact_area_fraction,
-            sample.mean_separation * 1e3
+            sample.mean_separation.m_to_mm()
         )?;
     }
     Ok(())

@@ -1,12 +1,13 @@
 //! The rubber of a single problem.
 
+use asperity::units::Units;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::shape::Shape;
 use crate::cli::{CliError, values};
-use crate::rubber::{
+use asperity::rubber::{
     FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
 };
 
@@ -20,7 +21,7 @@ pub(super) struct MaterialOptions {
     /// [default: that of the moduli in the file].
     #[arg(long, value_name = "C", requires = "rubber", conflicts_with_all = ["modulus", "poisson"], value_parser = values::finite, allow_negative_numbers = true)]
     temperature_c: Option<f64>,
-    /// Young's modulus in MPa of an elastic half-space in place of a rubber; with --poisson.
+    /// Young's modulus in MPa of an elastic half-space instead of a rubber; with --poisson.
     #[arg(long, value_name = "MPA", requires = "poisson", value_parser = values::positive, allow_negative_numbers = true)]
     modulus: Option<f64>,
     /// Poisson ratio of the elastic half-space, 0 to 0.5; with --modulus.
@@ -31,7 +32,7 @@ pub(super) struct MaterialOptions {
 /// The rubber at its temperature.
 pub(super) struct Material {
     data: RubberData,
-    /// Oddities of its file, if it has one.
+    /// Suspicious values of its file, if it has one.
     oddities: Vec<String>,
 }
 
@@ -40,7 +41,7 @@ impl MaterialOptions {
         let data = match (&self.rubber, self.modulus, self.poisson) {
             (Some(path), _, _) => read_rubber_data(path)?,
             (None, Some(modulus_mpa), Some(poisson_ratio)) => {
-                Rubber::elastic(modulus_mpa * 1e6, poisson_ratio).into()
+                Rubber::elastic(modulus_mpa.mpa_to_pa(), poisson_ratio).into()
             }
             _ => Rubber::table_2_1().into(),
         };
@@ -54,7 +55,7 @@ impl MaterialOptions {
         Ok(Material { data, oddities })
     }
 
-    /// The rubber, if it can be had at finite deformation.
+    /// The rubber, if it can be solved at finite deformation.
     pub(super) fn material_at_finite_deformation(&self) -> Result<Material, CliError> {
         let material = self.material()?;
         match FiniteStrainRubber::new(material.rubber(), Rheology::NeoHookean) {
@@ -82,8 +83,8 @@ impl Material {
         &self.data.rubber
     }
 
-    /// What looks like a mistake in its file, and what is extrapolated from the measurement of the rubber: the shift to its temperature, the
-    /// frequencies that the profile excites at a speed in m/s.
+    /// Warnings: what looks like a mistake in its file, and extrapolations beyond the measurement of the rubber, which are
+    /// the shift to its temperature and the frequencies that the profile excites at a speed in m/s.
     pub(super) fn warnings(&self, shape: &Shape, speed: f64) -> Vec<String> {
         let excited = FrequencyRange::excited(shape.excited_wavelengths(), [speed]);
         let extrapolations = self.data.extrapolations(excited);

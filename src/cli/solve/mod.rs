@@ -30,7 +30,7 @@ impl Solve {
     }
 }
 
-/// Refuses an output that is one of the inputs.
+/// Refuses to overwrite an input.
 ///
 /// # Errors
 /// [`CliError::Input`] naming the option and the file.

@@ -1,11 +1,12 @@
 //! A periodic profile in a text file of two columns.
 
+use asperity::units::Units;
 use std::path::Path;
 
 use super::shape::Shape;
 use crate::cli::values;
-use crate::files;
-use crate::scans::description::LengthUnit;
+use asperity::files;
+use asperity::scans::description::LengthUnit;
 
 /// Largest deviation of a position from equal spacing, in spacings: positions printed with few
 /// digits pass, a missing or a doubled point does not.
@@ -14,19 +15,19 @@ const SPACING_TOLERANCE: f64 = 0.05;
 /// Reads one period of a profile.
 ///
 /// # Errors
-/// What is wrong, with the file and the line.
+/// A message with the file and the line.
 pub(super) fn read_profile(path: &Path, unit: LengthUnit) -> Result<Shape, String> {
     let in_file = |problem: String| format!("{}: {problem}", path.display());
     let bytes = files::read(path, files::LARGEST_NUMBERS)
         .map_err(|error| in_file(format!("cannot be read: {error}{}", files::advice(&error))))?;
-    let text = String::from_utf8(bytes).map_err(|_| in_file("is no UTF-8 text".into()))?;
+    let text = String::from_utf8(bytes).map_err(|_| in_file("is not UTF-8 text".into()))?;
     parse_profile(&text, unit).map_err(|(line, problem)| match line {
         Some(line) => format!("{}, line {line}: {problem}", path.display()),
         None => in_file(problem),
     })
 }
 
-/// A problem and its line, counted from 1, where it has one.
+/// A problem and its line, counted from 1, if it has one.
 type Located = (Option<usize>, String);
 
 /// One line of the file.
@@ -62,7 +63,7 @@ fn parse_profile(text: &str, unit: LengthUnit) -> Result<Shape, Located> {
 }
 
 fn parse_point(data: &str) -> Result<(f64, f64), String> {
-    // Blanks around a comma or semicolon belong to it; two of them enclose an empty cell.
+    // Blanks around a comma or semicolon are part of the separator; between two separators is an empty cell.
     let cells: Vec<&str> = data
         .split([',', ';'])
         .flat_map(|part| match part.trim() {
@@ -72,7 +73,7 @@ fn parse_point(data: &str) -> Result<(f64, f64), String> {
         .collect();
     let [x, z] = cells[..] else {
         return Err(format!(
-            "{} columns, needed are the 2 columns x and z with decimal points",
+            "{} columns instead of the 2 columns x and z with decimal points",
             cells.len()
         ));
     };
@@ -98,7 +99,7 @@ fn cliff(heights: &[f64]) -> Option<String> {
         format!(
             "the profile ends {:.6} mm from the height that it begins with, {:.0} times its largest step: as a period it has \
              a cliff there; take the slope off, or cut it where it closes",
-            closing * 1e3,
+            closing.m_to_mm(),
             closing / inside
         )
     })

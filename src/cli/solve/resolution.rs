@@ -2,7 +2,8 @@
 
 use crate::cli::CliError;
 use crate::cli::output::significant;
-use crate::fem::profile::RigidProfile;
+use asperity::fem::profile::RigidProfile;
+use asperity::units::Units;
 
 /// Columns on the shortest wave without --columns: friction is then within about half a percent
 /// of the limit for usual areas.
@@ -38,7 +39,7 @@ pub(super) fn usual_columns(profile: &RigidProfile) -> Result<usize, CliError> {
          {DEFAULT_COLUMNS_PER_WAVE} columns on each are {columns}, more than the {MOST_DEFAULT_COLUMNS} that \
          are chosen without being asked for; choose wavelengths whose ratios are simple fractions, leave out the shortest or \
          the longest, or insist with --columns N",
-        significant(profile.period() * 1e3)
+        significant(profile.period().m_to_mm())
     )))
 }
 
@@ -78,7 +79,7 @@ pub(super) fn check(profile: &RigidProfile, columns: usize) -> Result<Vec<String
     if columns >= MANY_COLUMNS {
         warnings.push(format!(
             "the period of {} mm has {columns} columns: this takes minutes",
-            significant(profile.period() * 1e3)
+            significant(profile.period().m_to_mm())
         ));
     }
     Ok(warnings)

@@ -1,15 +1,16 @@
 //! The profile of a single problem: superposed sines or a file.
 
+use asperity::units::Units;
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
 
 use super::profile_file::read_profile;
 use crate::cli::{CliError, values};
-use crate::contact::sliding::{POINTS_RANGE, resample};
-use crate::fem::profile::RigidProfile;
-use crate::scans::description::LengthUnit;
-use crate::surface::{Wave, wave};
+use asperity::contact::sliding::{POINTS_RANGE, resample};
+use asperity::fem::profile::RigidProfile;
+use asperity::scans::description::LengthUnit;
+use asperity::surface::{Wave, wave};
 
 /// Five digits of the friction of one sine need a thousand points over its length.
 const LEAST_DEFAULT_POINTS: usize = 1024;
@@ -140,8 +141,8 @@ fn superpose(waves: &[Wave], points: Option<usize>) -> Result<Shape, String> {
         return Err(format!(
             "the waves cancel each other: of amplitudes of {} mm in all, heights of {:.1e} mm are left, which is \
              round-off; change an amplitude or a phase, or leave the waves out",
-            amplitudes * 1e3,
-            left * 1e3
+            amplitudes.m_to_mm(),
+            left.m_to_mm()
         ));
     }
     Ok(Shape { period, heights, waves: fitted, warning: None })
@@ -159,7 +160,7 @@ fn common_period(waves: &[Wave]) -> Result<f64, String> {
         .find(|period| waves.iter().all(|wave| divides(*period, wave.wavelength)))
         .ok_or_else(|| {
             let wavelengths: Vec<String> =
-                waves.iter().map(|wave| (wave.wavelength * 1e3).to_string()).collect();
+                waves.iter().map(|wave| (wave.wavelength.m_to_mm()).to_string()).collect();
             format!(
                 "the wavelengths {} mm have no common period up to {MAX_PERIOD} times the longest: \
                  choose wavelengths whose ratios are simple fractions",

@@ -7,8 +7,8 @@ use super::super::{CliError, values};
 use super::plan::describe;
 use super::submit::{SlurmOptions, submit};
 use super::{PlanPath, display, note_recipes, set_threads, tell, watched};
-use crate::artifact::Manifest;
-use crate::sweep::{Cases, Layout, STAGE, SweepPlan, check, collect, plan, read_plan};
+use asperity::artifact::Manifest;
+use asperity::sweep::{Cases, Layout, STAGE, SweepPlan, check, collect, plan, read_plan};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -20,7 +20,7 @@ Examples:
 
 /// Check that all solves are there and compute the remaining stages of all cases.
 ///
-/// Names the shards of what is missing, damaged or of another version of the tool. The tables of all cases, keyed
+/// Names the shards of solves that are missing, damaged or from another version of the tool. The tables of all cases, keyed
 /// by specimen, rubber, temperature and seed, are sweep/friction.arrow in the folder of the sweep; each case is a
 /// run folder of its own.
 #[derive(Debug, Args)]
@@ -29,7 +29,7 @@ pub(in crate::cli) struct Collect {
     #[command(flatten)]
     plan: PlanPath,
     /// If the solves ask for further tasks (micro, fem, multilevel, realisations for a tolerance), plan and submit these
-    /// as a further array in place of solving them here.
+    /// as a further array instead of solving them here.
     #[arg(long)]
     submit_next: bool,
     /// Make the tables of the cases whose solves are all there and leave out the others, for a sweep in which
@@ -43,7 +43,7 @@ pub(in crate::cli) struct Collect {
     threads: Option<usize>,
 }
 
-/// What a collection came to.
+/// Result of a collection.
 enum Outcome {
     /// Further tasks, and the plan that deals them.
     Next(PathBuf, Box<SweepPlan>),

@@ -16,10 +16,10 @@ use super::last_run::LastRun;
 use super::output::note;
 use super::progress::Bar;
 use super::{CliError, threads};
-use crate::artifact::RunView;
-use crate::recipe::{Case, Recipe};
-use crate::stages::{Stage, Watch};
-use crate::sweep::{Layout, RECIPE_FILE, SweepError};
+use asperity::artifact::RunView;
+use asperity::recipe::{Case, Recipe};
+use asperity::stages::{Stage, Watch};
+use asperity::sweep::{Layout, RECIPE_FILE, SweepError};
 
 /// Spread the cases of a recipe over many machines: plan, submit or run shards, collect.
 #[derive(Debug, Subcommand)]
@@ -60,7 +60,7 @@ impl PlanPath {
     }
 }
 
-/// Runs what can be watched and interrupted.
+/// Runs work with a progress bar that Ctrl-C can interrupt.
 fn watched<T>(
     quiet: bool,
     what: &str,
@@ -113,7 +113,7 @@ pub(super) fn tell(quiet: bool, layout: &Layout, cases: &[Case]) -> Result<(), C
     Ok(())
 }
 
-/// Makes a folder that of the sweep of a recipe, after a look at what is in it.
+/// Marks a folder as that of the sweep of a recipe, after a check of what is in it.
 pub(super) fn claim_sweep(
     recipe: &Recipe,
     last_run: &LastRun,
@@ -132,12 +132,12 @@ pub(super) fn claim_sweep(
     last_run.write(out, take_over)
 }
 
-/// Notes in the folder of each case which recipe its results are of, as `asperity run` does.
+/// Writes the note of the last run into the folder of each case, as `asperity run` does.
 pub(super) fn note_recipes(layout: &Layout, cases: &[Case]) -> Result<(), CliError> {
     for case in cases {
         let folder = layout.case(case);
         let path = folder.join(RECIPE_FILE);
-        // A case that was left out has none.
+        // A case that was left out has no recipe.
         if !path.exists() {
             continue;
         }
@@ -155,14 +155,14 @@ fn set_threads(asked: Option<usize>) -> Result<usize, CliError> {
     threads::start(threads::checked(asked)?.or(given.map(|cores| cores.min(threads::MOST))))
 }
 
-/// Cores that a scheduler gives this process: Slurm says their number, HyperQueue lists them.
+/// Cores that a scheduler gives this process: Slurm states their number, HyperQueue lists them.
 fn given_cores(variable: impl Fn(&str) -> Option<String>) -> Option<usize> {
     let listed = || Some(variable("HQ_CPUS")?.split(',').count());
     let number = variable("SLURM_CPUS_PER_TASK").and_then(|text| text.parse().ok());
     number.or_else(listed).filter(|cores| *cores > 0)
 }
 
-/// "3.2 min" and the like.
+/// A duration such as "32 min".
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 90.0 => format!("{s:.0} s"),

@@ -7,7 +7,7 @@ use super::super::output::{json as json_text, note, print};
 use super::super::recipe_options::{RecipeOptions, TakeOver};
 use super::super::{CliError, values};
 use super::{claim_sweep, duration, watched};
-use crate::sweep::{SweepPlan, plan};
+use asperity::sweep::{SweepPlan, plan};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,7 +26,7 @@ pub(in crate::cli) struct Plan {
     recipe: RecipeOptions,
     #[command(flatten)]
     folder: TakeOver,
-    /// Number of shards; minutes of work each are best.
+    /// Number of shards; best are shards of some minutes of work.
     #[arg(long, value_name = "N", value_parser = values::count::<usize>)]
     shards: usize,
     /// Print what is planned as JSON.
@@ -34,7 +34,7 @@ pub(in crate::cli) struct Plan {
     json: bool,
 }
 
-/// No plan has more: Slurm's own limit of an array is some four million.
+/// Largest number of shards; Slurm's own limit of an array is some four million.
 const MOST_SHARDS: usize = 100_000;
 /// Less work than this in a shard is mostly overhead of the scheduler.
 const LEAST_SECONDS: f64 = 60.0;
@@ -55,7 +55,7 @@ impl Plan {
             let seconds: Vec<f64> = plan.seconds().collect();
             let tasks: Vec<usize> = plan.shards.iter().map(|shard| shard.tasks).collect();
             return print(&json_text(&json!({
-                "plan": crate::files::name::path_text(&path),
+                "plan": asperity::files::name::path_text(&path),
                 "cases": plan.cases,
                 "tasks": tasks,
                 "seconds": seconds,
@@ -66,11 +66,17 @@ impl Plan {
     }
 }
 
-/// What is planned, in a line or two.
+/// Prints what is planned in a line or two.
 pub(super) fn describe(quiet: bool, plan: &SweepPlan) {
     let (tasks, shards) = (plan.tasks(), plan.shards.len());
     if tasks == 0 {
-        note(quiet, format_args!("{} cases, nothing is missing: collect", plan.cases));
+        note(
+            quiet,
+            format_args!(
+                "{} cases, no task is missing: `asperity sweep collect` makes the tables",
+                plan.cases
+            ),
+        );
         return;
     }
     let longest = plan.seconds().fold(0.0, f64::max);
@@ -90,7 +96,7 @@ pub(super) fn describe(quiet: bool, plan: &SweepPlan) {
         note(
             quiet,
             format_args!(
-                "  warning: {} a shard is little against what a scheduler takes to start it: --shards {fewer} would do",
+                "  warning: {} a shard is short compared with the time that a scheduler takes to start it: --shards {fewer} would be enough",
                 duration(total / shards as f64)
             ),
         );

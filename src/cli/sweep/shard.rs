@@ -5,7 +5,7 @@ use clap::Args;
 use super::super::output::{json, note, print};
 use super::super::{CliError, values};
 use super::{PlanPath, set_threads, watched};
-use crate::sweep::run_shard;
+use asperity::sweep::run_shard;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -18,8 +18,8 @@ Examples:
 
 /// Solve the tasks of one shard.
 ///
-/// What is there already is not solved again, so a shard may be run any number of times, also at once. Exit
-/// code 1 if a task cannot be solved; the others are solved all the same.
+/// Existing solves are not repeated, so a shard may be run any number of times, also several times at once. Exit
+/// code 1 if a task cannot be solved; the others are solved nevertheless.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Run {
@@ -36,7 +36,7 @@ pub(in crate::cli) struct Run {
     json: bool,
 }
 
-/// Where schedulers tell a process which element of an array it is.
+/// Variables in which schedulers state the element of the array.
 const ELEMENTS: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "HQ_TASK_ID"];
 
 impl Run {
@@ -60,7 +60,7 @@ impl Run {
             note(
                 quiet,
                 format_args!(
-                    "shard {shard}: {solved} of {tasks} tasks solved in {seconds:.1} s, {there} were there"
+                    "shard {shard}: {solved} of {tasks} tasks solved in {seconds:.1} s, {there} were solved before"
                 ),
             );
         }
@@ -77,9 +77,9 @@ impl Run {
 fn element() -> Result<usize, CliError> {
     let given = ELEMENTS.iter().find_map(|name| Some((name, std::env::var(name).ok()?)));
     match given {
-        Some((name, text)) => {
-            text.parse().map_err(|_| CliError::input(format!("{name} is `{text}`: no number")))
-        }
+        Some((name, text)) => text
+            .parse()
+            .map_err(|_| CliError::input(format!("{name} is `{text}`, which is not a number"))),
         None => Err(CliError::input(
             "which shard? Give --shard, or run in an element of a job array (SLURM_ARRAY_TASK_ID, HQ_TASK_ID)",
         )),

@@ -5,14 +5,14 @@ use clap::Args;
 use super::super::CliError;
 use super::super::output::{json, print};
 use super::PlanPath;
-use crate::sweep::{ShardState, read_plan, states};
+use asperity::sweep::{ShardState, read_plan, states};
 
 const EXAMPLES: &str = "\
 Examples:
   How far the shards are:
     asperity sweep status $PLAN";
 
-/// Tell how many tasks of each shard are solved.
+/// Show how many tasks of each shard are solved.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Status {

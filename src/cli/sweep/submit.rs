@@ -9,8 +9,8 @@ use clap::Args;
 use super::super::output::print;
 use super::super::{CliError, values};
 use super::PlanPath;
-use crate::sweep::slurm::{DEFAULT_MAX_ARRAY_SIZE, Request, scripts};
-use crate::sweep::{Layout, SweepPlan, read_plan};
+use asperity::sweep::slurm::{DEFAULT_MAX_ARRAY_SIZE, Request, scripts};
+use asperity::sweep::{Layout, SweepPlan, read_plan};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -23,8 +23,8 @@ Examples:
 
 /// Write job scripts for Slurm and submit them.
 ///
-/// The array is requeued where a node fails; time and memory are those predicted with a margin of three. The job
-/// that collects runs after all elements have ended, however they did, and names what is missing.
+/// The array is requeued if a node fails; time and memory are three times those predicted. The job that collects
+/// runs after all elements have ended, also if some failed, and names what is missing.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Submit {
@@ -37,7 +37,7 @@ pub(in crate::cli) struct Submit {
     slurm: SlurmOptions,
 }
 
-/// What is asked of Slurm for each element.
+/// Resources of each element.
 #[derive(Debug, Args)]
 pub(super) struct SlurmOptions {
     /// Cores of each element.
@@ -49,10 +49,10 @@ pub(super) struct SlurmOptions {
     /// Account to be charged.
     #[arg(long, value_name = "NAME", value_parser = values::line)]
     account: Option<String>,
-    /// Minutes for each element, in place of three times the prediction.
+    /// Minutes for each element, instead of three times the prediction.
     #[arg(long, value_name = "MINUTES", value_parser = values::one_or_more::<u32>)]
     minutes: Option<u32>,
-    /// Memory of each element in MB, in place of three times the prediction.
+    /// Memory of each element in MB, instead of three times the prediction.
     #[arg(long, value_name = "MB", value_parser = values::one_or_more::<u32>)]
     megabytes: Option<u32>,
     /// A further option of sbatch, such as --sbatch=--constraint=avx2; may be given several times.
@@ -85,7 +85,7 @@ impl Submit {
         }
         if plan.tasks() == 0 {
             return Err(CliError::input(
-                "nothing is missing in this plan: `asperity sweep collect` makes the tables",
+                "no task is missing in this plan: `asperity sweep collect` makes the tables",
             ));
         }
         submit(&path, &plan, &self.slurm)
@@ -136,7 +136,7 @@ fn sbatch(options: &[&str], script: &str) -> Result<String, CliError> {
     Ok(text.trim().split(';').next().unwrap_or_default().to_owned())
 }
 
-/// Slurm's limit of the elements of an array, or its default where there is no Slurm to ask.
+/// Slurm's limit of the elements of an array, or its default if Slurm does not answer.
 fn max_array_size() -> usize {
     let output = Command::new("scontrol").args(["show", "config"]).output();
     let text = output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned());

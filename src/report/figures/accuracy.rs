@@ -2,7 +2,7 @@
 
 use super::{grouped, heading, speed_key};
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Points, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::bem::SOLVES;
@@ -51,20 +51,22 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
     let of_fem = fem.iter().filter_map(of_all_waves);
     let of_multilevel = multilevel.iter().filter_map(of_all_waves);
     let kinds: [(&str, usize, Points); 4] = [
-        ("half-space, error by the grid", 1, of_bem.collect()),
-        ("microscale, force against heat", 2, of_micro.collect()),
-        ("fem, force against heat", 3, of_fem.collect()),
-        ("multilevel, force against heat", 5, of_multilevel.collect()),
+        ("half-space, error by the grid", 0, of_bem.collect()),
+        ("microscale, force against heat", 1, of_micro.collect()),
+        ("fem, force against heat", 2, of_fem.collect()),
+        ("multilevel, force against heat", 4, of_multilevel.collect()),
     ];
     let series: Vec<Series> = kinds
         .into_iter()
         .filter(|(_, _, points)| !points.is_empty())
-        .map(|(name, colour, points)| Series::new(name, colour, Mark::Circles(points)))
+        .map(|(name, colour, points)| {
+            Series::new(name, Colour::Nth(colour), Mark::OpenCircles(points))
+        })
         .collect();
     Ok((!series.is_empty()).then(|| Panel {
         title: "Every solved contact".into(),
-        across: Axis::logarithmic("estimated relative error of friction"),
-        up: Axis::logarithmic("wall time / s"),
+        x: Axis::logarithmic("estimated relative error of friction"),
+        y: Axis::logarithmic("wall time / s"),
         series,
     }))
 }
@@ -80,22 +82,21 @@ fn parts(rows: &[&FrictionRow]) -> Option<Panel> {
         ("sum", |row| row.error_estimate),
     ];
     let series = parts.into_iter().enumerate().filter_map(|(number, (name, part))| {
-        let points: Vec<(f64, f64)> = rows
+        let points: Points = rows
             .iter()
             .filter_map(|row| Some((row.contact_area_fraction, (part(row)? / row.mean).abs())))
             .filter(|(_, error)| error.is_finite() && *error > LEAST_ERROR)
             .collect();
         let is_sum = number + 1 == parts.len();
-        let (colour, mark) =
-            if is_sum { (0, Mark::Dashed(points)) } else { (number + 1, Mark::Line(points)) };
-        let empty = matches!(&mark, Mark::Line(p) | Mark::Dashed(p) if p.is_empty());
-        (!empty).then(|| Series::new(name, colour, mark))
+        let (colour, mark): (_, fn(Points) -> Mark) =
+            if is_sum { (Colour::Black, Mark::Dashed) } else { (Colour::Nth(number), Mark::Line) };
+        (!points.is_empty()).then(|| Series::new(name, colour, mark(points)))
     });
     let series: Vec<Series> = series.collect();
     (!series.is_empty()).then(|| Panel {
         title: format!("Parts of the error, {}", heading(rows[0].waves, rows[0].speed_mm_s)),
-        across: Axis::from_zero("contact area fraction Ac/A0"),
-        up: Axis::logarithmic("estimated relative error of friction"),
+        x: Axis::from_zero("contact area fraction Ac/A0"),
+        y: Axis::logarithmic("estimated relative error of friction"),
         series,
     })
 }

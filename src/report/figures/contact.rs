@@ -2,7 +2,7 @@
 
 use super::{grouped, speed_key};
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::bem::SOLVES;
@@ -15,12 +15,12 @@ pub(super) fn area(run: &RunView) -> Result<Option<Figure>, ReportError> {
         let series = speeds.map(|(number, rows)| {
             let points = rows.iter().map(|row| (row.pressure_mpa, row.contact_area_fraction));
             let label = format!("{} mm/s", rows[0].speed_mm_s);
-            Series::new(label, number + 1, Mark::Circles(points.collect()))
+            Series::new(label, Colour::Nth(number), Mark::OpenCircles(points.collect()))
         });
         Panel {
             title: format!("{waves} waves, half-space"),
-            across: Axis::logarithmic("mean pressure p / MPa"),
-            up: Axis::logarithmic("contact area fraction Ac/A0"),
+            x: Axis::logarithmic("mean pressure p / MPa"),
+            y: Axis::logarithmic("contact area fraction Ac/A0"),
             series: series.collect(),
         }
     });

@@ -2,7 +2,7 @@
 
 use super::{grouped, speed_key};
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::hybrid::{HYBRID, HybridRow};
@@ -35,7 +35,7 @@ pub(super) fn correction(run: &RunView) -> Result<Option<Figure>, ReportError> {
 }
 
 /// The samples of each speed; each realisation is a curve of its own where waves are several.
-fn curves<'a>(rows: &[&'a SampleRow]) -> Vec<(usize, Vec<&'a SampleRow>, bool)> {
+fn curves<'a>(rows: &[&'a SampleRow]) -> Vec<(Colour, Vec<&'a SampleRow>, bool)> {
     let mut curves = vec![];
     for (number, of_speed) in
         grouped(rows, |row| speed_key(row.speed_mm_s)).into_values().enumerate()
@@ -45,13 +45,13 @@ fn curves<'a>(rows: &[&'a SampleRow]) -> Vec<(usize, Vec<&'a SampleRow>, bool)> 
             realisations.map(|c| c.into_iter().map(|r| **r).collect::<Vec<_>>()).enumerate()
         {
             curve.sort_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
-            curves.push((number + 1, curve, place == 0));
+            curves.push((Colour::Nth(number), curve, place == 0));
         }
     }
     curves
 }
 
-fn named(label: String, first: bool, colour: usize, mark: Mark) -> Series {
+fn named(label: String, first: bool, colour: Colour, mark: Mark) -> Series {
     Series { label: first.then_some(label), colour, mark }
 }
 
@@ -73,8 +73,8 @@ fn both_models(waves: u32, rows: &[&SampleRow]) -> Panel {
     }
     Panel {
         title: format!("Microscale of {waves} waves"),
-        across: pressure(),
-        up: Axis::from_zero("friction coefficient µ"),
+        x: pressure(),
+        y: Axis::from_zero("friction coefficient µ"),
         series,
     }
 }
@@ -87,7 +87,7 @@ fn difference(waves: u32, rows: &[&SampleRow]) -> Panel {
             let (value, error) = (value(row), row.interpolation_error);
             (row.pressure_mpa, value - error, value + error)
         });
-        series.push(Series::unnamed(colour, Mark::Bars(bars.collect())));
+        series.push(Series::unnamed(colour, Mark::ErrorBars(bars.collect())));
         let line = curve.iter().map(|row| (row.pressure_mpa, value(row))).collect();
         series.push(named(
             format!("{} mm/s", curve[0].speed_mm_s),
@@ -98,8 +98,8 @@ fn difference(waves: u32, rows: &[&SampleRow]) -> Panel {
     }
     Panel {
         title: format!("Change by finite deformation, {waves} waves"),
-        across: pressure(),
-        up: Axis::linear("change of friction Δµ"),
+        x: pressure(),
+        y: Axis::linear("change of friction Δµ"),
         series,
     }
 }
@@ -113,14 +113,15 @@ fn whole_surface(waves: u32, rows: &[&HybridRow]) -> Option<Panel> {
                 Some((row.pressure_mpa, row.friction_coefficient? - row.friction_half_space))
             });
             let label = format!("{} mm/s", rows[0].speed_mm_s);
-            Series::new(label, number + 1, Mark::Circles(points.collect()))
+            Series::new(label, Colour::Nth(number), Mark::OpenCircles(points.collect()))
         })
         .collect();
-    let any = series.iter().any(|s| matches!(&s.mark, Mark::Circles(points) if !points.is_empty()));
+    let any =
+        series.iter().any(|s| matches!(&s.mark, Mark::OpenCircles(points) if !points.is_empty()));
     any.then(|| Panel {
         title: format!("Correction of the surface, {waves} waves"),
-        across: pressure(),
-        up: Axis::linear("correction of friction Δµ"),
+        x: pressure(),
+        y: Axis::linear("correction of friction Δµ"),
         series,
     })
 }

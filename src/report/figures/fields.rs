@@ -2,12 +2,14 @@
 
 use super::thinned;
 use crate::artifact::{ArrayDataset, Attribute, RunView};
-use crate::plot::{Axis, Figure, Mark, Panel, Points, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::stages::bem::FIELDS;
 use crate::stages::realise::{Surface, read_surfaces};
+use crate::units::Units;
 
-const COLUMNS: usize = 1000;
+/// Stretches of a surface that are drawn.
+const STRETCHES: usize = 1000;
 /// Share of the surface that a close-up shows.
 const CLOSE_UP: f64 = 0.06;
 
@@ -70,9 +72,9 @@ fn field(datasets: &[ArrayDataset], wanted: Place) -> Option<Field> {
         realisation,
         speed_mm_s,
         area,
-        spacing_mm: 1e3 * spacing,
+        spacing_mm: spacing.m_to_mm(),
         pressure: pressure.values.iter().map(|p| 1e-6 * p).collect(),
-        separation: separation.values.iter().map(|u| 1e3 * u).collect(),
+        separation: separation.values.iter().map(|u| u.m_to_mm()).collect(),
     })
 }
 
@@ -95,15 +97,15 @@ impl Field {
         start..(start + width).min(n)
     }
 
-    fn panels(&self, up: &Axis, series: &dyn Fn(&Self) -> Vec<(Series, Points)>) -> [Panel; 2] {
+    fn panels(&self, y: &Axis, series: &dyn Fn(&Self) -> Vec<(Series, Points)>) -> [Panel; 2] {
         let panel = |title: String, range: std::ops::Range<usize>| Panel {
             title,
-            across: Axis::linear("position x / mm"),
-            up: up.clone(),
+            x: Axis::linear("position x / mm"),
+            y: y.clone(),
             series: series(self)
                 .into_iter()
                 .map(|(series, points)| {
-                    let points = thinned(&points[range.clone()], COLUMNS);
+                    let points = thinned(&points[range.clone()], STRETCHES);
                     let mark = match series.mark {
                         Mark::Dashed(_) => Mark::Dashed(points),
                         _ => Mark::Line(points),
@@ -129,15 +131,15 @@ pub(super) fn pressure(run: &RunView) -> Result<Option<Figure>, ReportError> {
         return Ok(None);
     }
     let series = |field: &Field| {
-        let series = Series::unnamed(1, Mark::Line(vec![]));
+        let series = Series::unnamed(Colour::Nth(0), Mark::Line(vec![]));
         vec![(series, field.points(|i| field.pressure[i]))]
     };
-    let up = Axis::from_zero("contact pressure / MPa");
+    let y = Axis::from_zero("contact pressure / MPa");
     Ok(Some(Figure {
         caption: "Contact pressure of the half-space along one period of a realisation, and close \
                   to its largest value."
             .into(),
-        panels: fields.iter().flat_map(|field| field.panels(&up, &series)).collect(),
+        panels: fields.iter().flat_map(|field| field.panels(&y, &series)).collect(),
     }))
 }
 
@@ -155,21 +157,21 @@ pub(super) fn deformation(run: &RunView) -> Result<Option<Figure>, ReportError> 
         let Some(surface) = surfaces.iter().find(of_field) else { return vec![] };
         let height = |i: usize| {
             let x = 1e-3 * field.spacing_mm * i as f64;
-            1e3 * surface.profile.iter().map(|wave| wave.height(x)).sum::<f64>()
+            surface.profile.iter().map(|wave| wave.height(x)).sum::<f64>().m_to_mm()
         };
-        let rubber = Series::new("rubber", 2, Mark::Line(vec![]));
-        let road = Series::new("profile", 0, Mark::Line(vec![]));
+        let rubber = Series::new("rubber", Colour::Nth(1), Mark::Line(vec![]));
+        let road = Series::new("profile", Colour::Black, Mark::Line(vec![]));
         vec![
             (rubber, field.points(|i| height(i) + field.separation[i])),
             (road, field.points(height)),
         ]
     };
-    let up = Axis::linear("height / mm");
+    let y = Axis::linear("height / mm");
     Ok(Some(Figure {
         caption:
             "Deformed rubber on the rigid profile along one period of a realisation, and close \
                   to the largest pressure; the rubber slides to the right."
                 .into(),
-        panels: fields.iter().flat_map(|field| field.panels(&up, &series)).collect(),
+        panels: fields.iter().flat_map(|field| field.panels(&y, &series)).collect(),
     }))
 }

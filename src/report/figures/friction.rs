@@ -2,7 +2,7 @@
 
 use super::{grouped, heading};
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, Model};
@@ -10,28 +10,50 @@ use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, Mo
 const AREA: &str = "contact area fraction Ac/A0";
 const FRICTION_LABEL: &str = "friction coefficient µ";
 
-/// A panel for each number of waves and speed; in it each model with its band.
+/// Friction of a run, see [`friction_figure`].
 pub(super) fn friction(run: &RunView) -> Result<Option<Figure>, ReportError> {
-    let Some(all) = rows(run, FRICTION)? else { return Ok(None) };
-    let tables = grouped(&all, |row| (row.waves, super::speed_key(row.speed_mm_s)));
-    let panels = tables.into_values().map(|rows| Panel {
-        title: heading(rows[0].waves, rows[0].speed_mm_s),
-        across: Axis::from_zero(AREA),
-        up: Axis::from_zero(FRICTION_LABEL),
-        series: rows.chunk_by(|a, b| a.model == b.model).flat_map(model).collect(),
-    });
-    Ok(Some(Figure {
-        caption:
-            "Friction coefficient over contact area fraction, averaged over the realisations; \
-                  bands are 95 % confidence intervals of the mean, thin points single realisations."
-                .into(),
-        panels: panels.collect(),
-    }))
+    let rows = rows(run, FRICTION)?;
+    Ok(rows.map(|rows| friction_figure(&rows)))
 }
 
-/// Average, band and realisations of a model.
-fn model(rows: &[&FrictionRow]) -> Vec<Series> {
-    let (colour, dashed) = look(rows[0].model);
+/// Averaged friction over contact area: a panel for each number of waves and speed, in which the models
+/// are compared; rows of one model alone are one panel, in which the speeds are compared.
+pub fn friction_figure(rows: &[FrictionRow]) -> Figure {
+    let tables = grouped(rows, |row| (row.waves, super::speed_key(row.speed_mm_s)));
+    let tables: Vec<Vec<&FrictionRow>> = tables.into_values().collect();
+    let one_model = rows.iter().all(|row| row.model == rows[0].model);
+    let panel = |title: String, series: Vec<Series>| Panel {
+        title,
+        x: Axis::from_zero(AREA),
+        y: Axis::from_zero(FRICTION_LABEL),
+        series,
+    };
+    let panels = if one_model && tables.len() > 1 {
+        let series = tables.iter().enumerate().flat_map(|(number, table)| {
+            curve(table, &heading(table[0].waves, table[0].speed_mm_s), Colour::Nth(number), false)
+        });
+        vec![panel(format!("Model {}", rows[0].model), series.collect())]
+    } else {
+        let compared = tables.iter().map(|table| {
+            let models = table.chunk_by(|a, b| a.model == b.model).flat_map(|model| {
+                let (colour, dashed) = look(model[0].model);
+                curve(model, model[0].model.name(), colour, dashed)
+            });
+            panel(heading(table[0].waves, table[0].speed_mm_s), models.collect())
+        });
+        compared.collect()
+    };
+    Figure {
+        caption:
+            "Friction coefficient over contact area fraction, averaged over the realisations; \
+                  bands are 95 % confidence intervals of the mean, pale points single realisations."
+                .into(),
+        panels,
+    }
+}
+
+/// Average, band and realisations of one table.
+fn curve(rows: &[&FrictionRow], name: &str, colour: Colour, dashed: bool) -> Vec<Series> {
     let count = rows[0].realisations.len();
     let average = rows.iter().map(|row| (row.contact_area_fraction, row.mean)).collect();
     let band: Vec<_> = rows
@@ -47,10 +69,10 @@ fn model(rows: &[&FrictionRow]) -> Vec<Series> {
     }
     let label = match (rows[0].half_space_realisations, count) {
         (Some(half_space), pairs) => {
-            format!("{}, {half_space} of the half-space and {pairs} pairs, 95 %", rows[0].model)
+            format!("{name}, {half_space} of the half-space and {pairs} pairs, 95 %")
         }
-        (None, 0 | 1) => format!("{}, 1 surface", rows[0].model),
-        (None, count) => format!("{}, mean of {count}, 95 %", rows[0].model),
+        (None, 0 | 1) => format!("{name}, 1 surface"),
+        (None, count) => format!("{name}, mean of {count}, 95 %"),
     };
     let mark = if dashed { Mark::Dashed(average) } else { Mark::Line(average) };
     series.push(Series::new(label, colour, mark));
@@ -63,19 +85,20 @@ fn model(rows: &[&FrictionRow]) -> Vec<Series> {
     series
 }
 
-/// Colour of a model and whether its line is dashed, the same in all figures.
-pub(super) fn look(model: Model) -> (usize, bool) {
-    match model {
-        Model::Bem => (1, false),
-        Model::Hybrid => (2, true),
-        Model::Fem => (3, false),
-        Model::Multilevel => (5, false),
-        Model::Persson => (4, true),
-        Model::KlueppelHeinrich => (6, true),
-    }
+/// Colour of a model and whether its line is dashed, the same in all figures that compare models.
+fn look(model: Model) -> (Colour, bool) {
+    let (number, dashed) = match model {
+        Model::Bem => (0, false),
+        Model::Hybrid => (1, true),
+        Model::Fem => (2, false),
+        Model::Multilevel => (4, false),
+        Model::Persson => (3, true),
+        Model::KlueppelHeinrich => (5, true),
+    };
+    (Colour::Nth(number), dashed)
 }
 
-/// Published friction as discs beside the computed line and its band.
+/// Published friction as circles beside the computed line and its band.
 pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let Some(all) = rows(run, COMPARISON)? else {
         return Ok(None);
@@ -95,12 +118,16 @@ pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
                 rows[0].published_table,
                 heading(rows[0].waves, rows[0].speed_mm_s)
             ),
-            across: Axis::from_zero(AREA),
-            up: Axis::from_zero(FRICTION_LABEL),
+            x: Axis::from_zero(AREA),
+            y: Axis::from_zero(FRICTION_LABEL),
             series: vec![
-                Series::new("95 % interval", 1, Mark::Band(band.collect())),
-                Series::new("computed mean", 1, Mark::Line(line(|row| row.computed))),
-                Series::new("published mean", 0, Mark::Circles(line(|row| row.published))),
+                Series::new("95 % interval", Colour::Nth(0), Mark::Band(band.collect())),
+                Series::new("computed mean", Colour::Nth(0), Mark::Line(line(|row| row.computed))),
+                Series::new(
+                    "published mean",
+                    Colour::Black,
+                    Mark::OpenCircles(line(|row| row.published)),
+                ),
             ],
         }
     });
@@ -110,4 +137,43 @@ pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
             .into(),
         panels: panels.collect(),
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(model: Model, speed_mm_s: f64) -> FrictionRow {
+        FrictionRow {
+            model,
+            waves: 8,
+            speed_mm_s,
+            contact_area_fraction: 0.05,
+            realisations: vec![],
+            half_space_realisations: None,
+            mean: 0.6,
+            standard_deviation: None,
+            confidence_95: None,
+            interpolation_error: 0.0,
+            discretisation_error: None,
+            left_out_error: 0.0,
+            model_error: None,
+            error_estimate: None,
+            pressure_mpa: 0.3,
+            shortest_reliable_wavelength_mm: None,
+        }
+    }
+
+    #[test]
+    fn models_are_compared_at_each_speed_and_speeds_of_one_model_in_one_panel() {
+        let titles = |rows: &[FrictionRow]| -> Vec<String> {
+            friction_figure(rows).panels.into_iter().map(|panel| panel.title).collect()
+        };
+        let one = [row(Model::Bem, 10.0), row(Model::Bem, 50.0)];
+        assert_eq!(titles(&one), ["Model bem"]);
+        assert_eq!(titles(&one[..1]), ["8 waves, 10 mm/s"]);
+        let two = [one.as_slice(), &[row(Model::Hybrid, 10.0), row(Model::Hybrid, 50.0)]].concat();
+        assert_eq!(titles(&two), ["8 waves, 10 mm/s", "8 waves, 50 mm/s"]);
+        assert!(titles(&[]).is_empty());
+    }
 }

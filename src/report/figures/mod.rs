@@ -7,10 +7,15 @@ mod fields;
 mod friction;
 mod roughness;
 mod rubber;
+mod rubber_fit;
 mod scans;
+mod study;
 mod waves;
 
+pub use friction::friction_figure;
 pub(super) use rubber::{Material, material};
+pub use rubber_fit::rubber_fit_figure;
+pub use study::study_figure;
 pub(super) use waves::microscale_slope;
 
 use super::ReportError;
@@ -26,103 +31,103 @@ pub struct Kind {
     pub name: &'static str,
     /// What it shows.
     pub shows: &'static str,
-    /// What a run without it lacks.
-    pub wants: &'static str,
+    /// What a run must have for it.
+    pub requires: &'static str,
     /// The stages whose results it shows.
     pub stages: &'static [Stage],
     make: fn(&RunView) -> Result<Option<Figure>, ReportError>,
 }
 
 /// All kinds of figures, in the order of the data.
-pub static ALL: [Kind; 13] = [
+pub static ALL: [Kind; 14] = [
     Kind {
         name: "scans",
         shows: "heights of some windows over their length",
-        wants: "scans, section [ingest]",
+        requires: "scans, section [ingest]",
         stages: &[stages::ingest::STAGE],
         make: scans::scans,
     },
     Kind {
         name: "heights",
         shows: "distribution of the heights of all windows",
-        wants: "scans, section [ingest]",
+        requires: "scans, section [ingest]",
         stages: &[stages::ingest::STAGE],
         make: scans::heights,
     },
     Kind {
         name: "correlation",
         shows: "height-difference correlation of the scans and of the superposed sines",
-        wants: "scans, section [ingest]",
+        requires: "scans, section [ingest]",
         stages: &[stages::characterise::STAGE, stages::approximate::STAGE],
         make: roughness::correlation,
     },
     Kind {
         name: "spectrum",
         shows: "power spectral density with its standard error",
-        wants: "scans, section [ingest]",
+        requires: "scans, section [ingest]",
         stages: &[stages::characterise::STAGE],
         make: roughness::spectrum,
     },
     Kind {
         name: "waves",
         shows: "amplitudes and root mean square slopes of the superposed sines",
-        wants: "the stage approximate",
+        requires: "the stage approximate",
         stages: &[stages::approximate::STAGE, stages::micro::STAGE],
         make: waves::waves,
     },
     Kind {
         name: "friction",
         shows: "friction over contact area, all models, with the band over realisations",
-        wants: "the stage tables",
+        requires: "the stage tables",
         stages: &[stages::tables::STAGE],
         make: friction::friction,
     },
     Kind {
         name: "comparison",
         shows: "computed beside published friction",
-        wants: "published tables, key tables.published",
+        requires: "published tables, key tables.published",
         stages: &[stages::tables::STAGE],
         make: friction::comparison,
     },
     Kind {
         name: "area",
         shows: "contact area over pressure of every solved contact",
-        wants: "the stage bem",
+        requires: "the stage bem",
         stages: &[stages::bem::STAGE],
         make: contact::area,
     },
     Kind {
         name: "correction",
         shows: "friction of the microscale under both models and the correction, over pressure",
-        wants: "a microscale: section [micro], and waves that are steep enough",
+        requires: "a microscale: section [micro], and waves that are steep enough",
         stages: &[stages::micro::STAGE, stages::hybrid::STAGE],
         make: correction::correction,
     },
     Kind {
         name: "pressure",
         shows: "contact pressure along the surface",
-        wants: "fields, key bem.field_area_fractions",
+        requires: "fields, key bem.field_area_fractions",
         stages: &[stages::bem::STAGE],
         make: fields::pressure,
     },
     Kind {
         name: "deformation",
         shows: "profile and deformed rubber along the surface",
-        wants: "fields, key bem.field_area_fractions",
+        requires: "fields, key bem.field_area_fractions",
         stages: &[stages::realise::STAGE, stages::bem::STAGE],
         make: fields::deformation,
     },
     Kind {
         name: "rubber",
         shows: "moduli and loss factor over frequency with the frequencies that the surface excites",
-        wants: "the stage bem",
+        requires: "the stage bem",
         stages: &[stages::realise::STAGE, stages::bem::STAGE],
         make: rubber::rubber,
     },
     Kind {
         name: "accuracy",
         shows: "seconds against estimated error of every contact, and the parts of the error",
-        wants: "the stage bem",
+        requires: "the stage bem",
         stages: &[
             stages::bem::STAGE,
             stages::micro::STAGE,
@@ -132,6 +137,13 @@ pub static ALL: [Kind; 13] = [
         ],
         make: accuracy::accuracy,
     },
+    Kind {
+        name: "study",
+        shows: "friction and contact area of one sine over speed under three models",
+        requires: "the study of one sine, section [sinusoid]",
+        stages: &[stages::sinusoid::STAGE],
+        make: study::study,
+    },
 ];
 
 impl Kind {
@@ -140,7 +152,7 @@ impl Kind {
         ALL.iter().find(|kind| kind.name == name)
     }
 
-    /// The figure of a run; none where the run has not what it shows.
+    /// The figure of a run; `None` if the run has no such results.
     ///
     /// # Errors
     /// [`ReportError`] if results cannot be read.
@@ -149,9 +161,9 @@ impl Kind {
     }
 }
 
-/// At most about twice `columns` points that look alike: the lowest and the highest of each stretch.
-fn thinned(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
-    let stretch = points.len().div_ceil(columns.max(1));
+/// At most about twice `stretches` points that look alike: the lowest and the highest of each stretch.
+fn thinned(points: &[(f64, f64)], stretches: usize) -> Vec<(f64, f64)> {
+    let stretch = points.len().div_ceil(stretches.max(1));
     if stretch <= 2 {
         return points.to_vec();
     }
@@ -168,7 +180,7 @@ fn thinned(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
     points.chunks(stretch).flat_map(ends).collect()
 }
 
-/// Curves of a table, sorted and told apart by what `key` says.
+/// The rows of a table by key, in the order of the keys.
 fn grouped<R, K: Ord>(rows: &[R], key: impl Fn(&R) -> K) -> std::collections::BTreeMap<K, Vec<&R>> {
     let mut groups = std::collections::BTreeMap::<K, Vec<&R>>::new();
     for row in rows {

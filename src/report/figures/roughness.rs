@@ -2,7 +2,7 @@
 
 use super::grouped;
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
 use crate::report::read::{rows, table};
@@ -27,21 +27,21 @@ pub(super) fn correlation(run: &RunView) -> Result<Option<Figure>, ReportError> 
     for (number, (waves, rows)) in grouped(&fitted, |row| row.waves).into_iter().enumerate() {
         let line = rows.iter().map(|row| (row.lag_mm, row.fitted_mm2)).collect();
         let mark = if number % 2 == 0 { Mark::Line(line) } else { Mark::Dashed(line) };
-        series.push(Series::new(format!("{waves} sines"), number + 2, mark));
+        series.push(Series::new(format!("{waves} sines"), Colour::Nth(number + 1), mark));
     }
     let fits = rows(run, SELF_AFFINE)?.unwrap_or_default();
     if let Some(fit) = fits.iter().find(|row| row.scan == AVERAGE) {
         series.insert(0, self_affine(fit, &average));
     }
-    series.push(Series::new("scans, average", 1, Mark::Discs(average)));
+    series.push(Series::new("scans, average", Colour::Nth(0), Mark::FilledCircles(average)));
     Ok(Some(Figure {
         caption: "Height-difference correlation of the scans, averaged over all pairs of points, \
                   its self-affine fit and the correlation of the fitted sines."
             .into(),
         panels: vec![Panel {
             title: "Height-difference correlation".into(),
-            across: Axis::logarithmic("lag s / mm"),
-            up: Axis::logarithmic("correlation C(s) / mm²"),
+            x: Axis::logarithmic("lag s / mm"),
+            y: Axis::logarithmic("correlation C(s) / mm²"),
             series,
         }],
     }))
@@ -54,7 +54,7 @@ fn self_affine(fit: &SelfAffineRow, average: &[(f64, f64)]) -> Series {
     };
     let line = average.iter().map(|&(lag, _)| (lag, value(lag))).collect();
     let label = format!("self-affine, H = {:.2}", fit.hurst_exponent);
-    Series::new(label, 0, Mark::Dashed(line))
+    Series::new(label, Colour::Black, Mark::Dashed(line))
 }
 
 /// Spectrum of the scans with its standard error and the limit of what the instrument shows.
@@ -70,18 +70,22 @@ pub(super) fn spectrum(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let geometric = |row: &&SpectrumRow| Some((row.wavenumber_rad_mm, row.geometric_density_mm3?));
     let line = average.iter().map(|row| (row.wavenumber_rad_mm, row.density_mm3)).collect();
     let mut series = vec![
-        Series::new("± standard error", 1, Mark::Band(average.iter().map(band).collect())),
-        Series::new("arithmetic mean", 1, Mark::Line(line)),
+        Series::new(
+            "± standard error",
+            Colour::Nth(0),
+            Mark::Band(average.iter().map(band).collect()),
+        ),
+        Series::new("arithmetic mean", Colour::Nth(0), Mark::Line(line)),
         Series::new(
             "geometric mean, unbiased",
-            2,
-            Mark::Circles(average.iter().filter_map(geometric).collect()),
+            Colour::Nth(1),
+            Mark::OpenCircles(average.iter().filter_map(geometric).collect()),
         ),
     ];
     let reliable: Option<f64> = metadata.get(RELIABLE_KEY).and_then(|text| text.parse().ok());
     if let Some(wavelength) = reliable.filter(|wavelength| *wavelength > 0.0) {
         let label = format!("shortest reliable wave, {} mm", number(wavelength, 3));
-        series.push(Series::new(label, 0, Mark::Vertical(TAU / wavelength)));
+        series.push(Series::new(label, Colour::Black, Mark::VerticalLine(TAU / wavelength)));
     }
     Ok(Some(Figure {
         caption:
@@ -90,8 +94,8 @@ pub(super) fn spectrum(run: &RunView) -> Result<Option<Figure>, ReportError> {
                 .into(),
         panels: vec![Panel {
             title: "Power spectral density of the line scans".into(),
-            across: Axis::logarithmic("wavenumber q / (rad/mm)"),
-            up: Axis::logarithmic("density C(q) / mm³"),
+            x: Axis::logarithmic("wavenumber q / (rad/mm)"),
+            y: Axis::logarithmic("density C(q) / mm³"),
             series,
         }],
     }))

@@ -1,13 +1,17 @@
 //! The master curve of the rubber of a run.
 
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::rubber::{FrequencyRange, Rubber};
 use crate::stages::realise::{SURFACES, read_surfaces};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
+/// Colour of the storage modulus.
+pub(super) const STORAGE: Colour = Colour::Nth(0);
+/// Colour of the loss modulus and of the loss factor.
+pub(super) const LOSS: Colour = Colour::Nth(1);
 const CURVE_POINTS: i32 = 300;
 /// By how much the curves go beyond what is excited and what relaxes.
 const BEYOND: f64 = 30.0;
@@ -59,19 +63,19 @@ pub(super) fn rubber(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let excited =
         material.excited.iter().flat_map(|(_, range)| [range.lowest_hz, range.highest_hz]);
     let ends = |value: f64| value.is_finite() && value > 0.0;
-    let frequencies: Vec<f64> = relaxing.chain(excited).filter(|f| ends(*f)).collect();
-    let low = frequencies.iter().copied().fold(f64::INFINITY, f64::min) / BEYOND;
-    let high = frequencies.iter().copied().fold(0.0, f64::max) * BEYOND;
+    let of_interest: Vec<f64> = relaxing.chain(excited).filter(|f| ends(*f)).collect();
+    let low = of_interest.iter().copied().fold(f64::INFINITY, f64::min) / BEYOND;
+    let high = of_interest.iter().copied().fold(0.0, f64::max) * BEYOND;
     if low > high {
         return Ok(None);
     }
-    let at = |k: i32| low * (high / low).powf(f64::from(k) / f64::from(CURVE_POINTS));
-    let line = |value: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
-        (0..=CURVE_POINTS).map(at).map(|f| (f, value(TAU * f))).collect()
+    let over = frequencies(low, high);
+    let tan_delta = |frequency: &f64| {
+        let modulus = rubber.complex_modulus(TAU * frequency);
+        (*frequency, modulus.im / modulus.re)
     };
-    let storage = line(&|w| 1e-6 * rubber.complex_modulus(w).re);
-    let loss = line(&|w| 1e-6 * rubber.complex_modulus(w).im);
-    let factor = line(&|w| rubber.complex_modulus(w).im / rubber.complex_modulus(w).re);
+    let lines = moduli(rubber, &over, &|_| true)
+        .map(|(name, mark, colour)| Series::new(name, colour, mark));
     let frequency = || Axis::logarithmic("frequency f / Hz");
     let with_ranges = |lines: Vec<Series>| spans(&material).into_iter().chain(lines).collect();
     let temperature =
@@ -84,33 +88,63 @@ pub(super) fn rubber(run: &RunView) -> Result<Option<Figure>, ReportError> {
         panels: vec![
             Panel {
                 title: format!("{}{temperature}", rubber.name),
-                across: frequency(),
-                up: Axis::logarithmic("Young's modulus / MPa"),
-                series: with_ranges(vec![
-                    Series::new("storage modulus E′", 1, Mark::Line(storage)),
-                    Series::new("loss modulus E″", 2, Mark::Dashed(loss)),
-                ]),
+                x: frequency(),
+                y: modulus_axis(),
+                series: with_ranges(lines.to_vec()),
             },
             Panel {
                 title: "Loss factor".into(),
-                across: frequency(),
-                up: Axis::from_zero("loss factor tan δ"),
-                series: with_ranges(vec![Series::new("tan δ", 2, Mark::Line(factor))]),
+                x: frequency(),
+                y: Axis::from_zero("loss factor tan δ"),
+                series: with_ranges(vec![Series::new(
+                    "tan δ",
+                    LOSS,
+                    Mark::Line(over.iter().map(tan_delta).collect()),
+                )]),
             },
         ],
     }))
 }
 
+/// Axis of moduli in MPa.
+pub(super) fn modulus_axis() -> Axis {
+    Axis::logarithmic("Young's modulus / MPa")
+}
+
+/// Frequencies in Hz in equal ratios from the lowest to the highest.
+pub(super) fn frequencies(lowest: f64, highest: f64) -> Vec<f64> {
+    let share = |k: i32| f64::from(k) / f64::from(CURVE_POINTS);
+    (0..=CURVE_POINTS).map(|k| lowest * (highest / lowest).powf(share(k))).collect()
+}
+
+/// Storage and loss modulus of a rubber in MPa over frequencies in Hz, where `shown` holds for the
+/// modulus: name, line and colour.
+pub(super) fn moduli(
+    rubber: &Rubber,
+    frequencies: &[f64],
+    shown: &dyn Fn(f64) -> bool,
+) -> [(&'static str, Mark, Colour); 2] {
+    let line = |part: fn(&Rubber, f64) -> f64| -> Points {
+        let modulus = |frequency: &f64| 1e-6 * part(rubber, TAU * frequency);
+        let value = |modulus: f64| if shown(modulus) { modulus } else { f64::NAN };
+        frequencies.iter().map(|frequency| (*frequency, value(modulus(frequency)))).collect()
+    };
+    [
+        ("storage modulus E′", Mark::Line(line(|rubber, w| rubber.complex_modulus(w).re)), STORAGE),
+        ("loss modulus E″", Mark::Dashed(line(|rubber, w| rubber.complex_modulus(w).im)), LOSS),
+    ]
+}
+
 fn spans(material: &Material) -> Vec<Series> {
     let excited = material.excited.iter().enumerate().map(|(number, (speed, range))| {
         let span = Mark::Span(range.lowest_hz, range.highest_hz);
-        Series::new(format!("excited at {speed} mm/s"), number + 3, span)
+        Series::new(format!("excited at {speed} mm/s"), Colour::Nth(number + 2), span)
     });
     let ends = material.measured.into_iter().flatten().enumerate();
     let limits = ends.map(|(number, at)| Series {
         label: (number == 0).then(|| "limits of the measurement".into()),
-        colour: 0,
-        mark: Mark::Vertical(at),
+        colour: Colour::Black,
+        mark: Mark::VerticalLine(at),
     });
     excited.chain(limits).collect()
 }

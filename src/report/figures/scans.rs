@@ -2,17 +2,19 @@
 
 use super::thinned;
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
 use crate::stages::ingest::{SCANS, read_windows};
 use crate::surface::LineScan;
+use crate::units::Units;
 use std::f64::consts::TAU;
 
 /// Windows that are drawn; more hide each other.
 const DRAWN: usize = 4;
-const COLUMNS: usize = 800;
-/// Columns of the distribution of heights.
+/// Stretches of a window that are drawn.
+const STRETCHES: usize = 800;
+/// Bars of the histogram of heights.
 const BINS: usize = 60;
 
 fn windows(run: &RunView) -> Result<Vec<LineScan>, ReportError> {
@@ -20,7 +22,7 @@ fn windows(run: &RunView) -> Result<Vec<LineScan>, ReportError> {
 }
 
 fn valid(windows: &[LineScan]) -> impl Iterator<Item = f64> {
-    windows.iter().flat_map(|window| &window.heights).filter(|z| !z.is_nan()).map(|z| 1e3 * z)
+    windows.iter().flat_map(|window| &window.heights).filter(|z| !z.is_nan()).map(|z| z.m_to_mm())
 }
 
 /// Some windows one above the other.
@@ -35,18 +37,19 @@ pub(super) fn scans(run: &RunView) -> Result<Option<Figure>, ReportError> {
         let heights = || window.heights.iter().copied().filter(|z| !z.is_nan());
         heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
     };
-    let shift = 1.1e3 * drawn.iter().map(|window| range(window)).fold(0.0, f64::max);
+    let largest = drawn.iter().map(|window| range(window)).fold(0.0, f64::max);
+    let shift = 1.1 * largest.m_to_mm();
     let digits = 10_f64.powf(shift.log10().floor() - 1.0);
     let shift = (shift / digits).ceil() * digits;
     let series = drawn.iter().enumerate().map(|(number, window)| {
-        let up = (drawn.len() - 1 - number) as f64 * shift;
+        let offset = (drawn.len() - 1 - number) as f64 * shift;
         let points: Vec<(f64, f64)> = window
             .heights
             .iter()
             .enumerate()
-            .map(|(i, z)| (1e3 * window.spacing * i as f64, 1e3 * z + up))
+            .map(|(i, z)| (window.spacing.m_to_mm() * i as f64, z.m_to_mm() + offset))
             .collect();
-        Series::new(&window.name, number + 1, Mark::Line(thinned(&points, COLUMNS)))
+        Series::new(&window.name, Colour::Nth(number), Mark::Line(thinned(&points, STRETCHES)))
     });
     let apart = match drawn.len() {
         1 => String::new(),
@@ -54,8 +57,8 @@ pub(super) fn scans(run: &RunView) -> Result<Option<Figure>, ReportError> {
     };
     let panel = Panel {
         title: format!("{} of {} windows", drawn.len(), windows.len()),
-        across: Axis::linear("position x / mm"),
-        up: Axis::linear(format!("height z / mm{apart}")),
+        x: Axis::linear("position x / mm"),
+        y: Axis::linear(format!("height z / mm{apart}")),
         series: series.collect(),
     };
     Ok(Some(Figure {
@@ -77,11 +80,11 @@ pub(super) fn heights(run: &RunView) -> Result<Option<Figure>, ReportError> {
         return Ok(None);
     }
     let width = (high - low) / BINS as f64;
-    let mut columns = vec![0.0; BINS];
+    let mut densities = vec![0.0; BINS];
     for height in valid(&windows) {
-        columns[(((height - low) / width) as usize).min(BINS - 1)] += 1.0 / (count * width);
+        densities[(((height - low) / width) as usize).min(BINS - 1)] += 1.0 / (count * width);
     }
-    let columns = columns.iter().enumerate().map(|(bin, density)| {
+    let bars = densities.iter().enumerate().map(|(bin, density)| {
         let from = low + width * bin as f64;
         (from, from + width, *density)
     });
@@ -92,11 +95,15 @@ pub(super) fn heights(run: &RunView) -> Result<Option<Figure>, ReportError> {
         (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0).map(|z| (z, gaussian(z)));
     let panel = Panel {
         title: format!("{} windows, {count} heights", windows.len()),
-        across: Axis::linear("height z / mm"),
-        up: Axis::from_zero("probability density / (1/mm)"),
+        x: Axis::linear("height z / mm"),
+        y: Axis::from_zero("probability density / (1/mm)"),
         series: vec![
-            Series::new("heights of the scans", 1, Mark::Columns(columns.collect())),
-            Series::new("Gaussian of the same mean and Rq", 2, Mark::Line(curve.collect())),
+            Series::new("heights of the scans", Colour::Nth(0), Mark::Histogram(bars.collect())),
+            Series::new(
+                "Gaussian of the same mean and Rq",
+                Colour::Nth(1),
+                Mark::Line(curve.collect()),
+            ),
         ],
     };
     Ok(Some(Figure {

@@ -2,10 +2,11 @@
 
 use super::grouped;
 use crate::artifact::RunView;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::approximate::{ScaleRow, WAVES};
+use crate::units::Units;
 
 /// The steepness from which a wave counts to the microscale of a run, if it has one.
 pub(in crate::report) fn microscale_slope(run: &RunView) -> Result<Option<f64>, ReportError> {
@@ -18,7 +19,7 @@ pub(super) fn waves(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let Some(scales) = rows(run, WAVES)? else { return Ok(None) };
     let (mut amplitudes, mut slopes) = (vec![], vec![]);
     for (number, (waves, rows)) in grouped(&scales, |row| row.waves).into_iter().enumerate() {
-        let name = format!("{waves} waves");
+        let (name, colour) = (format!("{waves} waves"), Colour::Nth(number));
         // Side by side, so that the bars of different fits do not hide each other.
         let beside = 1.06_f64.powi(number as i32);
         let place = |row: &ScaleRow| beside * row.wavelength_mm;
@@ -27,22 +28,21 @@ pub(super) fn waves(run: &RunView) -> Result<Option<Figure>, ReportError> {
             // An amplitude is not negative, and one of zero has no place on a logarithmic axis.
             let low = (row.amplitude_mm - half).max(0.0);
             (row.amplitude_mm > 0.0)
-                .then(|| (place(row), 1e3 * low, 1e3 * (row.amplitude_mm + half)))
+                .then(|| (place(row), low.mm_to_um(), (row.amplitude_mm + half).mm_to_um()))
         });
-        amplitudes.push(Series::unnamed(number + 1, Mark::Bars(bars.collect())));
-        let amplitude = rows.iter().map(|row| (place(row), 1e3 * row.amplitude_mm)).collect();
-        amplitudes.push(Series::new(&name, number + 1, Mark::Discs(amplitude)));
+        amplitudes.push(Series::unnamed(colour, Mark::ErrorBars(bars.collect())));
+        let amplitude = rows.iter().map(|row| (place(row), row.amplitude_mm.mm_to_um())).collect();
+        amplitudes.push(Series::new(&name, colour, Mark::FilledCircles(amplitude)));
         let slope: Vec<(f64, f64)> = rows.iter().map(|row| (place(row), row.rms_slope)).collect();
-        slopes.push(Series::unnamed(number + 1, Mark::Dashed(slope.clone())));
-        slopes.push(Series::new(&name, number + 1, Mark::Discs(slope)));
+        slopes.push(Series::unnamed(colour, Mark::Dashed(slope.clone())));
+        slopes.push(Series::new(&name, colour, Mark::FilledCircles(slope)));
     }
     if let Some(limit) = microscale_slope(run)? {
         let label = "finite deformation above this slope";
-        slopes.push(Series::new(label, 0, Mark::Horizontal(limit)));
+        slopes.push(Series::new(label, Colour::Black, Mark::HorizontalLine(limit)));
     }
     let wavelength = || Axis::logarithmic("wavelength λ / mm");
-    let panel =
-        |title: &str, up, series| Panel { title: title.into(), across: wavelength(), up, series };
+    let panel = |title: &str, y, series| Panel { title: title.into(), x: wavelength(), y, series };
     Ok(Some(Figure {
         caption: "Amplitudes of the superposed sines with 95 % confidence intervals, where they \
                   are known, and their root mean square slopes. Different numbers of waves are set \

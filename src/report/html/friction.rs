@@ -13,7 +13,7 @@ use crate::stages::tables::{
 };
 use maud::{Markup, html};
 
-const NO_TABLES: &str = "This run has no averaged friction yet: the stage tables is not there.";
+const NO_TABLES: &str = "This run has no averaged friction yet: the stage tables has not run.";
 
 impl Report<'_> {
     fn friction_rows(&self) -> Result<Vec<FrictionRow>, ReportError> {
@@ -61,7 +61,7 @@ impl Report<'_> {
             (self.warnings(&[stages::bem::STAGE, stages::multilevel::STAGE])?)
             p { @match tolerance {
                 Some(tolerance) => { "The recipe asks for a relative accuracy of the averages of " (percent(tolerance)) "." }
-                None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated all the same." }
+                None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated nevertheless." }
             } }
             (self.seconds()?)
             (self.figure("accuracy")?)
@@ -164,10 +164,10 @@ fn comparison_table(rows: &[ComparisonRow]) -> Markup {
 
 fn model_table(models: &[ModelRow]) -> Markup {
     table(
-        "How far the models are apart, means over the contact areas that both have",
+        "Difference between models, means over the contact areas that both have",
         &[
             "model",
-            "measured by",
+            "reference",
             "waves",
             "speed / (mm/s)",
             "Ac/A0 from",
@@ -234,7 +234,7 @@ fn error_table(rows: &[FrictionRow]) -> Markup {
 
 fn realisation_table(rows: &[RealisationsRow]) -> Markup {
     table(
-        "Realisations that the averages rest on",
+        "Number of realisations in the averages",
         &[
             "waves",
             "speed / (mm/s)",

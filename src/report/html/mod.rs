@@ -20,7 +20,7 @@ pub(crate) use page::number;
 
 const STYLE: &str = include_str!("style.css");
 
-/// What the results do not say of themselves.
+/// What is known of a run beyond its results.
 #[derive(Debug, Clone, Default)]
 pub struct Origin {
     /// Command that brought the run folder up to date.
@@ -92,7 +92,7 @@ pub fn document(run: &RunView, origin: &Origin) -> Result<String, ReportError> {
     Ok(page.into_string())
 }
 
-/// A run and what is known of its making.
+/// A run and where its results come from.
 struct Report<'a> {
     run: &'a RunView,
     origin: &'a Origin,
@@ -146,7 +146,7 @@ impl Report<'_> {
         } }
     }
 
-    /// Why a result of these stages is not to be relied on, in the section that shows it.
+    /// Why results of these stages are not up to date, for the section that shows them.
     fn doubt(&self, stages: &[Stage]) -> Markup {
         html! { @for doubt in stages.iter().filter_map(|stage| self.origin.doubts.get(stage)) {
             p.warning role="note" { strong { "Not up to date: " } (doubt) }
@@ -171,8 +171,8 @@ impl Report<'_> {
         let Some(kind) = Kind::named(name) else { return Ok(html! {}) };
         let Some(figure) = kind.figure(self.run)? else {
             return Ok(page::absent(&format!(
-                "No figure of {}: that takes {}.",
-                kind.shows, kind.wants
+                "No figure of {}: it needs {}.",
+                kind.shows, kind.requires
             )));
         };
         let elements = figure

@@ -3,7 +3,7 @@
 use crate::plot::scientific;
 use maud::{Markup, html};
 
-/// A sentence in place of what a run does not have.
+/// A sentence that replaces what a run does not have.
 pub(super) fn absent(sentence: &str) -> Markup {
     html! { p.absent { (sentence) } }
 }
@@ -24,7 +24,7 @@ pub(crate) fn number(value: f64, digits: usize) -> String {
     format!("{value:.*}", decimals.max(0) as usize).replace('-', "\u{2212}")
 }
 
-/// The same of a value that may not be known.
+/// A number with so many significant digits, or a dash for an unknown one.
 pub(super) fn optional(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".into(), |value| number(value, digits))
 }

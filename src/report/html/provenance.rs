@@ -1,4 +1,4 @@
-//! Where the results come from and how to have them again.
+//! Where the results come from and how to compute them again.
 
 use super::Report;
 use super::page::{absent, table};
@@ -18,7 +18,7 @@ impl Report<'_> {
             (stage_table(&manifests, self))
             (input_table(&manifests))
             (output_table(&manifests))
-            h3 { "How to have it again" }
+            h3 { "How to compute it again" }
             @match &origin.command {
                 Some(command) => { p { "The command of the last run" (threads(origin.threads, origin.tool_version.as_deref())) ":" }
                     pre tabindex="0" { (command) } }

@@ -8,6 +8,7 @@ use crate::report::read::rows;
 use crate::stages;
 use crate::stages::approximate::{FITS, FitRow, ScaleRow, WAVES};
 use crate::stages::characterise::{AVERAGE, HURST, SELF_AFFINE, SelfAffineRow};
+use crate::units::Units;
 use maud::{Markup, html};
 
 impl Report<'_> {
@@ -98,8 +99,8 @@ fn wave_table(rows: &[ScaleRow], limit: Option<f64>) -> Markup {
                 row.scale.to_string(),
                 model(row).into(),
                 number(row.wavelength_mm, 4),
-                number(1e3 * row.amplitude_mm, 4),
-                optional(row.amplitude_confidence_95_mm.map(|half| 1e3 * half), 2),
+                number(row.amplitude_mm.mm_to_um(), 4),
+                optional(row.amplitude_confidence_95_mm.map(|half| half.mm_to_um()), 2),
                 number(row.rms_slope, 3),
             ]
         }),

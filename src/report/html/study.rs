@@ -2,25 +2,17 @@
 
 use super::Report;
 use super::page::{number, optional, table};
-use crate::plot::described;
-use crate::report::{ReportError, Study, study_figure};
+use crate::report::{ReportError, Study};
 use crate::stages;
 use crate::stages::sinusoid::PointRow;
-use maud::{Markup, PreEscaped, html};
-
-const SHOWS: &str =
-    "Friction and contact area of one sine over the Deborah number under three models";
+use maud::{Markup, html};
 
 impl Report<'_> {
     pub(super) fn study(&self) -> Result<Markup, ReportError> {
         let study = Study::read(self.run)?;
-        let svg =
-            study_figure(&study).map_err(|source| ReportError::Figure { name: "study", source })?;
         Ok(html! {
             (self.warnings(&[stages::sinusoid::STAGE])?)
-            figure { div.panels { div.panel tabindex="0" role="group" aria-label=(SHOWS) {
-                (PreEscaped(described(&svg, "study", SHOWS, SHOWS)))
-            } } figcaption { (SHOWS) "." } }
+            (self.figure("study")?)
             @for rows in study.points.chunk_by(|a, b| a.aspect_ratio == b.aspect_ratio) {
                 (point_table(rows))
             }

@@ -10,7 +10,7 @@ mod warnings;
 pub use cleaning::{CLEANING_FILE, cleaning_markdown};
 pub use faults::{FAULTS, FaultRow};
 pub use files::{ScanFile, find_scans, inputs};
-pub use picture::fault_picture;
+pub use picture::fault_figure;
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::{Stage, StageError};

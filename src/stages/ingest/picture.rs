@@ -1,24 +1,11 @@
 //! Pictures of the faults of a scan, in SVG.
 
 use crate::artifact::Pending;
-use crate::plot::{COLOURS, FONT, FigureError};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::stages::StageError;
 use crate::surface::ConditioningReport;
-use crate::surface::faults::{FaultOverview, Marks};
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::*;
+use crate::surface::faults::{Closeup, FaultOverview, Marks};
 use std::collections::BTreeMap;
-use std::ops::Range;
-
-const WIDTH: u32 = 900;
-const PANEL_HEIGHT: u32 = 340;
-/// Share of the height of a panel that the ticks of missing points take, at its bottom.
-const TICK: f64 = 0.03;
-/// Room above the heights for the legend, as a share of their range.
-const LEGEND: f64 = 0.4;
-
-type Panel<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Writes the pictures of the scans that have faults, `most` at most, and returns the file of each
 /// by the name of its scan.
@@ -27,13 +14,16 @@ pub(super) fn write_pictures(
     most: usize,
     pending: &mut Pending,
 ) -> Result<BTreeMap<String, String>, StageError> {
-    let mut worst: Vec<_> = reports.iter().filter(|report| report.overview.is_some()).collect();
+    let mut worst: Vec<_> = reports
+        .iter()
+        .filter_map(|report| Some((smallest_rest(report), report, fault_figure(report)?)))
+        .collect();
     // Stable: scans that are alike keep their order.
-    worst.sort_by(|a, b| smallest_rest(a).total_cmp(&smallest_rest(b)));
+    worst.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut pictures = BTreeMap::new();
-    for (number, report) in worst.into_iter().take(most).enumerate() {
+    for (number, (_, report, figure)) in worst.into_iter().take(most).enumerate() {
         let file = format!("faults_{:02}.svg", number + 1);
-        pending.write_document(&file, &fault_picture(report)?)?;
+        pending.write_document(&file, &figure.svg()?)?;
         pictures.insert(report.scan.clone(), file);
     }
     Ok(pictures)
@@ -44,142 +34,77 @@ fn smallest_rest(report: &ConditioningReport) -> f64 {
     report.faults.iter().filter_map(|fault| fault.high_frequency_ratio).fold(1.0, f64::min)
 }
 
-/// A scan as measured with its faults, and the surroundings of the largest step among them. Returns
-/// the SVG.
-///
-/// # Errors
-/// [`FigureError`] if the scan has no faults, or the drawing fails.
-pub fn fault_picture(report: &ConditioningReport) -> Result<String, FigureError> {
-    let overview = report
-        .overview
-        .as_ref()
-        .ok_or_else(|| FigureError(format!("{} has no faults to draw", report.scan)))?;
-    let mut svg = String::new();
-    draw(&mut svg, report, overview).map_err(|error| FigureError(error.to_string()))?;
-    Ok(svg)
-}
-
-fn draw(svg: &mut String, report: &ConditioningReport, overview: &FaultOverview) -> Drawn {
-    let panels = 1 + u32::from(overview.closeup.is_some());
-    let root = SVGBackend::with_string(svg, (WIDTH, panels * PANEL_HEIGHT)).into_drawing_area();
-    root.fill(&WHITE)?;
+/// A scan as measured with its faults, and the surroundings of the largest step among them. `None` if
+/// the scan has no faults.
+pub fn fault_figure(report: &ConditioningReport) -> Option<Figure> {
+    let overview = report.overview.as_ref()?;
     let kinds: Vec<&str> = overview.marks.iter().map(|marks| marks.fault.as_str()).collect();
-    let areas = root.split_evenly((panels as usize, 1));
-
-    let stretches = &overview.stretches;
-    let positions = stretches.iter().map(|stretch| stretch.position_mm);
-    let heights = stretches.iter().flat_map(|stretch| [stretch.lowest_mm, stretch.highest_mm]);
-    let title = format!("{}: the scan as measured", report.scan);
-    let heights = range(heights);
-    let above_legend = heights.end + LEGEND * (heights.end - heights.start);
-    let (mut chart, bottom) =
-        panel(&areas[0], &title, range(positions), heights.start..above_legend)?;
-    for run in stretches.split(|stretch| stretch.lowest_mm.is_nan()) {
-        let upper = run.iter().map(|stretch| (stretch.position_mm, stretch.highest_mm));
-        let lower = run.iter().rev().map(|stretch| (stretch.position_mm, stretch.lowest_mm));
-        let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
-        chart.draw_series([Polygon::new(outline.clone(), BLACK.mix(0.25))])?;
-        chart.draw_series([PathElement::new(outline, BLACK.mix(0.6))])?;
-    }
-    for marks in &overview.marks {
-        let colour = colour(&kinds, &marks.fault);
-        mark(&mut chart, marks, colour, &bottom)?;
-        chart
-            .draw_series(LineSeries::new(Vec::<(f64, f64)>::new(), colour))?
-            .label(caption(report, &marks.fault))
-            .legend(move |(x, y)| Circle::new((x + 12, y), 4, colour.filled()));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(BLACK.mix(0.3))
-        .label_font((FONT, 14))
-        .draw()?;
-
-    if let Some(closeup) = &overview.closeup {
-        let positions = closeup.points.iter().map(|point| point[0]);
-        let heights = closeup.points.iter().map(|point| point[1]);
-        let title = "the largest step at a fault, point by point";
-        let (mut chart, bottom) = panel(&areas[1], title, range(positions), range(heights))?;
-        for run in closeup.points.split(|point| point[1].is_nan()) {
-            let line = run.iter().map(|point| (point[0], point[1]));
-            chart.draw_series(LineSeries::new(line, BLACK.mix(0.6)).point_size(2))?;
-        }
-        for marks in &closeup.marks {
-            mark(&mut chart, marks, colour(&kinds, &marks.fault), &bottom)?;
-        }
-    }
-    root.present()?;
-    Ok(())
+    let mut panels = vec![whole_scan(report, overview, &kinds)];
+    panels.extend(overview.closeup.as_ref().map(|closeup| largest_step(closeup, &kinds)));
+    Some(Figure {
+        caption:
+            "The scan as measured, with circles at its faults and ticks at missing points, and \
+                  the points around the largest step at a fault."
+                .into(),
+        panels,
+    })
 }
 
-/// Axes of a panel, and the range of heights at its bottom where missing points are ticked.
-fn panel<'a, 'b>(
-    area: &'a DrawingArea<SVGBackend<'b>, plotters::coord::Shift>,
-    title: &str,
-    across: Range<f64>,
-    heights: Range<f64>,
-) -> Result<(Panel<'a, 'b>, Range<f64>), Box<dyn std::error::Error>> {
-    let bottom = heights.start..heights.start + TICK * (heights.end - heights.start);
-    let mut chart = ChartBuilder::on(area)
-        .margin(12)
-        .margin_right(25)
-        .caption(title, (FONT, 17))
-        .x_label_area_size(45)
-        .y_label_area_size(65)
-        .build_cartesian_2d(across, heights)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .x_desc("position on the track [mm]")
-        .y_desc("height [mm]")
-        .axis_desc_style((FONT, 15))
-        .label_style((FONT, 13))
-        .draw()?;
-    Ok((chart, bottom))
-}
-
-/// A dot at each fault; points without a height are ticks at the bottom.
-fn mark(chart: &mut Panel, marks: &Marks, colour: RGBColor, bottom: &Range<f64>) -> Drawn {
-    let (missing, valid): (Vec<&[f64; 2]>, Vec<_>) =
-        marks.points.iter().partition(|point| point[1].is_nan());
-    let ticks = missing.iter().map(|&&[x, _]| {
-        PathElement::new([(x, bottom.start), (x, bottom.end)], colour.stroke_width(1))
+fn whole_scan(report: &ConditioningReport, overview: &FaultOverview, kinds: &[&str]) -> Panel {
+    // From the lowest to the highest of each stretch and back; stretches without heights are gaps.
+    let outline = overview.stretches.iter().flat_map(|stretch| {
+        [stretch.lowest_mm, stretch.highest_mm].map(|height| (stretch.position_mm, height))
     });
-    chart.draw_series(ticks)?;
-    let dots = valid.iter().map(|&&[x, z]| Circle::new((x, z), 3, colour.filled()));
-    chart.draw_series(dots)?;
-    Ok(())
+    let mut series = vec![Series::unnamed(Colour::Grey, Mark::Line(outline.collect()))];
+    for marks in &overview.marks {
+        let label = Some(name(report, &marks.fault));
+        series.extend(faults(marks, kinds, label));
+    }
+    panel(format!("{}: the scan as measured", report.scan), series)
+}
+
+fn largest_step(closeup: &Closeup, kinds: &[&str]) -> Panel {
+    let points: Points = closeup.points.iter().map(|&[x, z]| (x, z)).collect();
+    let mut series = vec![
+        Series::unnamed(Colour::Grey, Mark::Line(points.clone())),
+        Series::unnamed(Colour::Black, Mark::Dots(points)),
+    ];
+    series.extend(closeup.marks.iter().flat_map(|marks| faults(marks, kinds, None)));
+    panel("the largest step at a fault, point by point".into(), series)
+}
+
+fn panel(title: String, series: Vec<Series>) -> Panel {
+    Panel {
+        title,
+        x: Axis::linear("position on the track x / mm"),
+        y: Axis::linear("height z / mm"),
+        series,
+    }
+}
+
+/// A circle at each fault and a tick at each one without a height; the label stands at what there is.
+fn faults(marks: &Marks, kinds: &[&str], label: Option<String>) -> Vec<Series> {
+    let kind = kinds.iter().position(|kind| *kind == marks.fault).unwrap_or(0);
+    // Vermilion first, since the first kind is the one that a reader looks for.
+    let colour = Colour::Nth(kind + 1);
+    let (missing, measured): (Vec<&[f64; 2]>, Vec<_>) =
+        marks.points.iter().partition(|point| point[1].is_nan());
+    let ticks = Mark::Rug(missing.iter().map(|point| point[0]).collect());
+    let circles = Mark::FilledCircles(measured.iter().map(|&&[x, z]| (x, z)).collect());
+    let (of_ticks, of_circles) = if measured.is_empty() { (label, None) } else { (None, label) };
+    vec![
+        Series { label: of_ticks, colour, mark: ticks },
+        Series { label: of_circles, colour, mark: circles },
+    ]
 }
 
 /// Kind, number and decision, as in the table of the faults.
-fn caption(report: &ConditioningReport, fault: &str) -> String {
+fn name(report: &ConditioningReport, fault: &str) -> String {
     let row = report.faults.iter().find(|row| row.fault == fault);
     row.map_or_else(
         || format!("{} {fault}", report.points_missing_in_file + report.points_absent),
         |row| format!("{} {fault}: {}", row.count, row.decision),
     )
-}
-
-fn colour(kinds: &[&str], fault: &str) -> RGBColor {
-    let place = kinds.iter().position(|kind| *kind == fault).unwrap_or(0);
-    // Vermilion first, since the first kind is the one that a reader looks for.
-    COLOURS[(place + 1) % COLOURS.len()]
-}
-
-/// The range of the valid values with a margin of 4 % on both sides.
-fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let valid = values.filter(|value| !value.is_nan());
-    let (low, high) = valid.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-        (low.min(value), high.max(value))
-    });
-    if low > high {
-        return -1.0..1.0;
-    }
-    let margin = (0.04 * (high - low)).max(1e-9 * high.abs()).max(1e-9);
-    low - margin..high + margin
 }
 
 #[cfg(test)]
@@ -202,26 +127,24 @@ mod tests {
         let mut heights = road(5000);
         (heights[1000], heights[3000]) = (1e-3, -1e-3);
         heights[2000..2010].fill(f64::NAN);
-        let svg = fault_picture(&report(heights)).unwrap();
-        for text in ["2 spikes: missing", "10 missing points", "the largest step", "height [mm]"] {
+        let svg = fault_figure(&report(heights)).unwrap().svg().unwrap();
+        for text in ["2 spikes: missing", "10 missing points", "the largest step", "height z / mm"]
+        {
             assert!(svg.contains(text), "{text} is not in the figure");
         }
         assert!(svg.contains("07 &lt;a&amp;b&gt;"), "the name is not escaped");
-        // Two in the overview, one in the close-up, one in the legend, and that of missing points.
-        assert_eq!(svg.matches("<circle").count() - closeup_dots(&svg), 5);
-    }
-
-    /// The dots of the line in the close-up, which are smaller than those of the faults.
-    fn closeup_dots(svg: &str) -> usize {
-        svg.matches("r=\"2\"").count()
+        // Two spikes in the overview, one in the close-up, one in the legend; in the close-up the points of
+        // the track are smaller.
+        assert_eq!(svg.matches("r=\"24\"").count(), 4);
+        assert!(svg.matches("r=\"16\"").count() > 20);
     }
 
     #[test]
     fn a_scan_without_faults_has_no_picture_and_one_of_gaps_alone_no_close_up() {
-        assert!(fault_picture(&report(road(500))).is_err());
+        assert_eq!(fault_figure(&report(road(500))), None);
         let mut heights = road(500);
         heights[7] = f64::NAN;
-        let svg = fault_picture(&report(heights)).unwrap();
+        let svg = fault_figure(&report(heights)).unwrap().svg().unwrap();
         assert!(!svg.contains("the largest step"));
     }
 }

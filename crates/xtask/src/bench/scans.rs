@@ -1,9 +1,9 @@
 //! Correlation and spectrum of a scan: by FFT and by their definition, against compensated sums.
 
 use super::{Case, Failure, Method, Prepared, Reference};
-use crate::surface::LineScan;
-use crate::surface::correlation::{CorrelationPlan, log_spaced_lags};
-use crate::surface::spectrum::{SpectrumPlan, Window};
+use asperity::surface::LineScan;
+use asperity::surface::correlation::{CorrelationPlan, log_spaced_lags};
+use asperity::surface::spectrum::{SpectrumPlan, Window};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;

@@ -1,16 +1,16 @@
 //! Small recipes that are run through the pipeline, in a temporary folder.
 
 use super::Failure;
-use crate::artifact::RunView;
-use crate::numerics::Interrupt;
-use crate::pipeline::{self, Selection};
-use crate::recipe::Recipe;
-use crate::surface::Wave;
+use asperity::artifact::RunView;
+use asperity::numerics::Interrupt;
+use asperity::pipeline::{self, Selection};
+use asperity::recipe::Recipe;
+use asperity::surface::Wave;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-const RUBBER: &str = include_str!("../../data/rubber/table_2_1.toml");
+const RUBBER: &str = include_str!("../../../../data/rubber/table_2_1.toml");
 
 /// A recipe of given waves, in a folder of its own that goes with the value.
 pub(super) struct Campaign {

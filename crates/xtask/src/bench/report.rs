@@ -1,4 +1,4 @@
-//! Tables for people, and where they stand in a document.
+//! Tables in Markdown, and their place in a document.
 
 use super::CaseResult;
 use std::fmt::Write;
@@ -48,7 +48,7 @@ pub(super) fn significant(value: f64) -> String {
 }
 
 /// A document with new results: those between the lines `<!-- bench: begin -->` and
-/// `<!-- bench: end -->` are replaced and all else stays. None if the document has no such lines.
+/// `<!-- bench: end -->` are replaced, all else stays. `None` if the document has no such lines.
 pub fn renewed(document: &str, results: &str) -> Option<String> {
     let (before, rest) = document.split_once(BEGIN)?;
     let (_, after) = rest.split_once(END)?;

@@ -10,7 +10,7 @@ const MOST_REPEATS: usize = 25;
 /// Further repeats are made while all of them together take less than this, in s.
 const ENOUGH_SECONDS: f64 = 0.3;
 
-/// How much work is put into the figures.
+/// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Effort {
     /// All values of the knobs, medians of repeats.

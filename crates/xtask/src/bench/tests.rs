@@ -72,10 +72,10 @@ fn results_are_a_table_and_a_plot() {
     // Three methods of two values each.
     let rows = table.lines().filter(|line| line.contains("| points |"));
     assert_eq!(rows.count(), 6);
-    let svg = figure::figure(&results).unwrap();
-    for text in ["seconds", "relative error of friction", "half-space, 1 wave", "correlation, FFT"]
+    let svg = figure::figure(&results).svg().unwrap();
+    for text in ["time / s", "relative error of friction", "half-space, 1 wave", "correlation, FFT"]
     {
         assert!(svg.contains(text), "{text}");
     }
-    assert!(figure::figure(&[]).is_err());
+    assert!(figure::figure(&[]).svg().is_err());
 }

@@ -7,12 +7,12 @@ mod job;
 mod memory;
 mod report;
 
-pub use job::{Job, Sample, SolveCost};
+pub use job::{Job, Sample};
 pub use report::markdown;
 
 use super::measure::Effort;
-use crate::error_kind::{ErrorKind, HasKind};
-use crate::numerics::statistics::least_squares_line;
+use asperity::error_kind::{ErrorKind, HasKind};
+use asperity::numerics::statistics::least_squares_line;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -45,7 +45,7 @@ pub struct Row {
     pub sample: Sample,
 }
 
-/// Why there are no figures.
+/// Why there are no results.
 #[derive(Debug, thiserror::Error)]
 pub enum GrowthError {
     /// The process of a job could not be started.
@@ -67,7 +67,7 @@ pub enum GrowthError {
         message: String,
     },
     /// A text that names no job.
-    #[error("{text} is no job: points:N, waves:N or campaign:REALISATIONS:THREADS")]
+    #[error("{text} is not a job: points:N, waves:N or campaign:REALISATIONS:THREADS")]
     NoJob {
         /// The text.
         text: String,

@@ -13,8 +13,10 @@
 //! | `campaign` | small recipes run through the pipeline |
 //! | [`growth`] | time and memory over the size of a job, with exponents |
 //! | [`report`], [`figure`] | tables and the plot |
+//! | [`command`] | the task and its options |
 
 mod campaign;
+pub mod command;
 pub mod figure;
 mod finite_deformation;
 pub mod growth;
@@ -24,13 +26,13 @@ pub mod measure;
 pub mod report;
 mod scans;
 
-use crate::error_kind::{ErrorKind, HasKind};
-use crate::numerics::krylov::euclidean_norm;
+use asperity::error_kind::{ErrorKind, HasKind};
+use asperity::numerics::krylov::euclidean_norm;
 use measure::{Effort, Measured, measure};
 use serde::Serialize;
 use std::error::Error;
 
-/// What a solver or the machine has to complain about.
+/// An error of a solver or of the operating system.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
 /// A solver that is ready to be timed: from its set-up to its result.
@@ -125,7 +127,7 @@ pub struct CaseResult {
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
-    /// A name that is no case.
+    /// There is no case of that name.
     #[error("there is no case {name}: choose from {}", known.join(", "))]
     UnknownCase {
         /// The name that was asked for.

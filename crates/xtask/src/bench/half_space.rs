@@ -1,9 +1,9 @@
 //! The viscoelastic half-space: friction over the grid points on the period.
 
 use super::{Case, Failure, Method, Prepared, Reference};
-use crate::contact::SlidingContact;
-use crate::rubber::Rubber;
-use crate::surface::{Wave, wave};
+use asperity::contact::SlidingContact;
+use asperity::rubber::Rubber;
+use asperity::surface::{Wave, wave};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;

@@ -2,11 +2,11 @@
 
 use super::half_space::SPEED;
 use super::{Case, Failure, Method, Prepared, Reference};
-use crate::fem::profile::RigidProfile;
-use crate::fem::steady::{BlockOptions, SteadyContact};
-use crate::fem::transient::{TransientContact, TransientOptions};
-use crate::rubber::{Rheology, Rubber};
-use crate::surface::Wave;
+use asperity::fem::profile::RigidProfile;
+use asperity::fem::steady::{BlockOptions, SteadyContact};
+use asperity::fem::transient::{TransientContact, TransientOptions};
+use asperity::rubber::{Rheology, Rubber};
+use asperity::surface::Wave;
 
 pub(super) const COLUMNS: &str = "columns";
 
@@ -40,7 +40,7 @@ const AMPLITUDE: f64 = 0.005e-3;
 const PRESSURE: f64 = 5e5;
 /// Shear of the mesh that keeps its elements upright, about half of that of the block.
 const SKEW: f64 = -0.03;
-/// Six periods, the last two averaged, in place of the twelve of the thesis: half the time, and
+/// Six periods, the last two averaged, instead of the twelve of the thesis: half the time, and
 /// friction changes by less than the error of the meshes.
 const DRAG_PERIODS: usize = 6;
 const AVERAGED_PERIODS: usize = 2;

@@ -6,7 +6,7 @@ use crate::bench::Failure;
 use crate::bench::campaign::Campaign;
 use crate::bench::half_space::{contact, surface};
 use crate::bench::measure::{Effort, Measured, measure};
-use crate::rubber::Rubber;
+use asperity::rubber::Rubber;
 use realfft::RealFftPlanner;
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -4,12 +4,12 @@ use super::campaign::Campaign;
 use super::finite_deformation::steady_friction;
 use super::half_space::surface;
 use super::{Case, Failure, Method, Prepared, Reference};
-use crate::fem::profile::RigidProfile;
-use crate::rubber::Rubber;
-use crate::stages::bem::CURVES;
-use crate::stages::hybrid::HYBRID;
-use crate::stages::realise::read_surfaces;
-use crate::surface::Wave;
+use asperity::fem::profile::RigidProfile;
+use asperity::rubber::Rubber;
+use asperity::stages::bem::CURVES;
+use asperity::stages::hybrid::HYBRID;
+use asperity::stages::realise::read_surfaces;
+use asperity::surface::Wave;
 
 const KNOB: &str = "columns per wave";
 const WAVES: usize = 3;
