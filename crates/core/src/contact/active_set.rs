@@ -360,7 +360,7 @@ mod tests {
     fn a_residual_that_cannot_fall_any_more_ends_the_iteration() {
         let n = 128;
         let rubber = Rubber::elastic(3e6, 0.5);
-        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.01, 1e-3, n);
+        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.01, 1e-3, n).unwrap();
         let (mut unit, mut kernel) = (vec![0.0; n], vec![0.0; n]);
         unit[0] = 1.0;
         space.displacement(&unit, &mut kernel);

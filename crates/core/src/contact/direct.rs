@@ -66,7 +66,7 @@ mod tests {
         let (name, equilibrium_modulus, poisson_ratio) = ("one branch".into(), 2e6, 0.45);
         let rubber = Rubber { name, equilibrium_modulus, branches, poisson_ratio };
         let n = 512;
-        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.2, 1e-3, n);
+        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.2, 1e-3, n).unwrap();
         let mut unit = vec![0.0; n];
         unit[0] = 1.0;
         let mut kernel = vec![0.0; n];

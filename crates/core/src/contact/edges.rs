@@ -15,9 +15,12 @@
 //! `A_+` and the factor of the continuous symbol differ for long waves. The exponents with which
 //! the pressure grows (a half for an elastic body, others for a lossy one, different at the
 //! leading and the trailing edge) never appear.
+//!
+//! The integrals run over waves that the grid does not hold. There a measured rubber has the modulus at the nearer end
+//! of its measurement: this moves the offset by some hundredths of a grid step, and no pressure.
 
 use super::half_space::compliance;
-use crate::rubber::Rubber;
+use crate::rubber::Viscoelastic;
 use std::f64::consts::PI;
 
 /// Pressures next to an edge that are read: their polynomial is a cubic.
@@ -38,7 +41,7 @@ pub(super) struct EdgeReader {
 
 impl EdgeReader {
     /// Reader for a sliding `speed` in m/s and a grid `spacing` in m.
-    pub fn new(rubber: &Rubber, speed: f64, spacing: f64) -> Self {
+    pub fn new(rubber: &dyn Viscoelastic, speed: f64, spacing: f64) -> Self {
         let symbol = |angle: f64| compliance(rubber, speed, angle / spacing, angle / PI);
         let unit = symbol(PI).norm();
         let mut even = [0.0; MOST_PRESSURES];
@@ -197,6 +200,7 @@ fn zero_before(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rubber::Rubber;
 
     /// Offset for an elastic body: `1/π (∫_0^π ln θ (1/(4 sin²(θ/2)) - 1/θ²) dθ - (1 + ln π)/π)`,
     /// by adaptive quadrature.

@@ -6,7 +6,7 @@ use super::error::ContactError;
 use super::half_space::HalfSpace;
 use super::solution::{ContactSolution, Fields};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberError, Viscoelastic};
 use realfft::RealFftPlanner;
 
 /// Residual below which a contact counts as solved; see [`ContactSolution::residual`].
@@ -66,9 +66,11 @@ impl SlidingContact {
     ///
     /// # Errors
     /// [`ContactError::OutOfRange`] for a period that is not positive, a speed that is not
-    /// finite or a number of points outside [`POINTS_RANGE`]; [`ContactError::BadHeight`].
+    /// finite or a number of points outside [`POINTS_RANGE`]; [`ContactError::BadHeight`];
+    /// [`ContactError::Rubber`] for numbers that are no rubber, or if the modulus is not known at the
+    /// frequency of a wave of the grid.
     pub fn new(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -82,7 +84,7 @@ impl SlidingContact {
     /// # Errors
     /// As [`Self::new`]; [`ContactError::Interrupted`].
     pub fn new_interruptible(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -94,7 +96,7 @@ impl SlidingContact {
         let mut planner = RealFftPlanner::new();
         let mut grid = |heights| -> Result<Grid, ContactError> {
             check_interrupt(interrupt)?;
-            Ok(Grid::new(&mut planner, rubber, speed, period, heights))
+            Ok(Grid::new(&mut planner, rubber, speed, period, heights)?)
         };
         let mut grids = vec![grid(centred)?];
         while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
@@ -248,19 +250,19 @@ impl SlidingContact {
 impl Grid {
     fn new(
         planner: &mut RealFftPlanner<f64>,
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: Vec<f64>,
-    ) -> Self {
+    ) -> Result<Self, RubberError> {
         let points = heights.len();
-        let mut space = HalfSpace::new(planner, rubber, speed, period, points);
+        let mut space = HalfSpace::new(planner, rubber, speed, period, points)?;
         let mut unit = vec![0.0; points];
         unit[0] = 1.0;
         let mut kernel = vec![0.0; points];
         space.displacement(&unit, &mut kernel);
         let edges = EdgeReader::new(rubber, speed, period / points as f64);
-        Self { space, heights, kernel, edges }
+        Ok(Self { space, heights, kernel, edges })
     }
 }
 
@@ -271,7 +273,7 @@ pub(crate) fn check_interrupt(interrupt: &Interrupt) -> Result<(), ContactError>
 }
 
 pub(crate) fn check(
-    rubber: &Rubber,
+    rubber: &dyn Viscoelastic,
     speed: f64,
     period: f64,
     heights: &[f64],
@@ -351,6 +353,7 @@ pub fn resample(values: &[f64], points: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rubber::Rubber;
 
     fn heights() -> Vec<f64> {
         (0..64).map(|i| 1e-5 * (0.1 * f64::from(i)).sin()).collect()

@@ -11,7 +11,7 @@ use crate::contact::sliding::{
     remove_mean, resample,
 };
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberError, Viscoelastic};
 use realfft::RealFftPlanner;
 
 /// Residual below which a coarser grid has done its duty.
@@ -64,7 +64,7 @@ impl SoftContact {
     /// # Errors
     /// As [`crate::contact::SlidingContact::new`].
     pub fn new(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -78,7 +78,7 @@ impl SoftContact {
     /// # Errors
     /// As [`crate::contact::SlidingContact::new_interruptible`].
     pub fn new_interruptible(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -89,7 +89,8 @@ impl SoftContact {
         let mut planner = RealFftPlanner::new();
         let mut grid = |heights| -> Result<Grid, SoftContactError> {
             check_interrupt(interrupt)?;
-            Ok(Grid::new(&mut planner, rubber, speed, period, heights))
+            Ok(Grid::new(&mut planner, rubber, speed, period, heights)
+                .map_err(ContactError::Rubber)?)
         };
         let mut grids = vec![grid(remove_mean(heights))?];
         while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
@@ -195,18 +196,18 @@ impl SoftContact {
 impl Grid {
     fn new(
         planner: &mut RealFftPlanner<f64>,
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: Vec<f64>,
-    ) -> Self {
+    ) -> Result<Self, RubberError> {
         let points = heights.len();
-        let mut space = HalfSpace::new(planner, rubber, speed, period, points);
+        let mut space = HalfSpace::new(planner, rubber, speed, period, points)?;
         let mut unit = vec![0.0; points];
         unit[0] = 1.0;
         let mut kernel = vec![0.0; points];
         space.displacement(&unit, &mut kernel);
-        Self { space, heights, kernel }
+        Ok(Self { space, heights, kernel })
     }
 
     fn newton<'a>(

@@ -415,7 +415,7 @@ fn a_law_ten_thousand_times_deeper_than_the_profile_is_solved() {
 fn a_layer_that_is_uniform_but_for_round_off_is_uniform() {
     let rubber = Rubber::table_2_1();
     let mut planner = realfft::RealFftPlanner::new();
-    let mut space = HalfSpace::new(&mut planner, &rubber, 1e-3, PERIOD, 64);
+    let mut space = HalfSpace::new(&mut planner, &rubber, 1e-3, PERIOD, 64).unwrap();
     let set: Vec<u32> = (0..16).map(|i| 4 * i).collect();
     let compliance = space.compliance_range().1;
     let mut under = |other: f64| {
