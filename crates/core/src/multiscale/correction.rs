@@ -124,10 +124,10 @@ impl Microscale {
         self
     }
 
-    /// The smallest sampled pressure in Pa. A contact point has at least this pressure: below it
-    /// the mesh of the microscale does not resolve the contact.
-    pub fn smallest_pressure(&self) -> f64 {
-        self.pressures.0
+    /// Whether a point of the macro contact with this local pressure in Pa is a contact point: one with at least
+    /// the smallest sampled pressure, below which the mesh of the microscale does not resolve the contact.
+    pub fn is_contact_point(&self, pressure: f64) -> bool {
+        pressure >= self.pressures.0
     }
 
     /// The largest sampled pressure in Pa.
@@ -148,9 +148,9 @@ impl Microscale {
         sampled.then(|| (self.half_space.at(log), self.finite.at(log)))
     }
 
-    /// The correction under local pressures in Pa on equidistant points. Pressures below the
-    /// smallest sampled one are no contact points; their little force takes the friction of
-    /// the smallest, their area none. `None` if there is no contact point.
+    /// The correction under local pressures in Pa on equidistant points. Of points that are no
+    /// [contact points](Self::is_contact_point) the little force takes the friction of the smallest sampled
+    /// pressure, and the area is left out. `None` if there is no contact point.
     ///
     /// # Errors
     /// [`LawError::BeyondSamples`] for a pressure above the largest sampled one.
@@ -167,7 +167,7 @@ impl Microscale {
             force.add(pressure, friction);
             mesh +=
                 self.discretisation_error.as_ref().map_or(0.0, |error| pressure * error.at(log));
-            if pressure >= smallest {
+            if self.is_contact_point(pressure) {
                 points.add(1.0, friction);
                 area += self.area_change.at(log);
             }

@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use crate::reference::FullContact;
     use crate::rubber::{MaxwellBranch, Rubber};
-    use crate::surface::{Wave, wave};
+    use crate::surface::{TABLE_3_1_MM, Wave, wave};
     use proptest::prelude::*;
     use rustfft::num_complex::Complex64;
     use std::f64::consts::PI;
@@ -171,9 +171,11 @@ mod tests {
     }
 
     fn ladder() -> Vec<SineScale> {
-        [(6.25e-5, 1.867e-5), (1.25e-4, 2.648e-5), (2.5e-4, 2.939e-5)]
-            .map(|(wavelength, amplitude)| SineScale { wavelength, amplitude })
-            .to_vec()
+        let scale = |(wavelength, amplitude): &(f64, f64)| SineScale {
+            wavelength: 1e-3 * wavelength,
+            amplitude: 1e-3 * amplitude,
+        };
+        TABLE_3_1_MM[..3].iter().map(scale).collect()
     }
 
     #[test]

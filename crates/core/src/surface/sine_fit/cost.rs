@@ -155,13 +155,13 @@ impl Solver<LogarithmicCost, AmplitudeState> for UntilStationary {
 /// The trust region judges a step by the fall of the cost, which round-off hides once the gradient
 /// is below some 1e-9; Newton steps, judged by the gradient, go on from there.
 pub(super) fn minimise(cost: &LogarithmicCost, start: DVector<f64>) -> Minimum {
-    let steihaug = Steihaug::new().with_epsilon(1e-12).expect("a positive tolerance");
+    let failed = Minimum { amplitudes: start.clone(), gradient_norm: f64::NAN, iterations: 0 };
+    let Ok(steihaug) = Steihaug::new().with_epsilon(1e-12) else { return failed };
     let solver = UntilStationary { region: TrustRegion::new(steihaug), tolerance: NEWTON_BASIN };
     let run = Executor::new(cost.clone(), solver)
-        .configure(|state| state.param(start.clone()).max_iters(MAXIMUM_ITERATIONS))
+        .configure(|state| state.param(start).max_iters(MAXIMUM_ITERATIONS))
         .timer(false)
         .run();
-    let failed = Minimum { amplitudes: start, gradient_norm: f64::NAN, iterations: 0 };
     let Ok(mut result) = run else { return failed };
     let iterations = result.state.get_iter();
     let Some(amplitudes) = result.state.take_param() else { return failed };
