@@ -13,8 +13,7 @@ use super::super::kinematics::{Tensor, green_strain, strain_change};
 use super::Inverted;
 use super::lanes::{Lanes, lane, set_lane};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Measure, Rheology, Scalar, Spring, Symmetric, contract,
-    dilatation, inverse, one_plus, sandwich,
+    FiniteStrainRubber, Measure, Scalar, Spring, Symmetric, contract, sandwich,
 };
 
 /// Smallest `A` and `Q` of an element that is taken for valid.
@@ -27,8 +26,8 @@ const LEAST: f64 = 1e-3;
 /// volumetric  δT = (c G:δm - Σ_k c_k G_k:δm_k) G - σ G δm G
 /// ```
 ///
-/// with `G = C⁻¹` and `G_k = C_k⁻¹` under neo-Hooke; under the linear law both are unit tensors and
-/// σ vanishes. Forces follow in double precision; what a row keeps for its tangent is in single
+/// with `G`, `c_k = Λ_k/2 V/V_k` and `σ = Σ_k (c_k - Λ_k/2)` of the law
+/// ([`metric`](crate::rubber::Rheology::metric)). Forces follow in double precision; what a row keeps for its tangent is in single
 /// precision: it makes directions, not solutions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Point<T = f64> {
@@ -211,7 +210,7 @@ impl Law<'_> {
         measure: &Symmetric,
     ) -> Result<Symmetric, Inverted> {
         let spring = &self.rubber.equilibrium;
-        let (metric, volume) = metric(self.rubber.rheology, measure)?;
+        let (metric, volume) = self.rubber.rheology.metric(measure).ok_or(Inverted)?;
         point.metric = metric;
         point.modulus = self.modulus(spring, volume);
         point.pressure = self.pressure(spring, volume);
@@ -230,11 +229,9 @@ impl Law<'_> {
         stress: &mut Symmetric,
     ) -> Result<(), Inverted> {
         let [measure, internal, _] = tensors;
-        let (metric, past) = metric(self.rubber.rheology, internal)?;
-        let volume = match self.rubber.rheology {
-            Rheology::NeoHookean => (1.0 + dilatation(measure)) / past,
-            Rheology::Linear => 1.0,
-        };
+        let rheology = self.rubber.rheology;
+        let (metric, past) = rheology.metric(internal).ok_or(Inverted)?;
+        let volume = rheology.volume(measure) / past;
         let modulus = self.modulus(spring, volume);
         let factor = if self.volumetric {
             modulus
@@ -268,21 +265,6 @@ impl Law<'_> {
 
     fn pressure(&self, spring: &Spring, volume: f64) -> f64 {
         if self.volumetric { 0.5 * spring.volumetric * (volume - 1.0) } else { 0.0 }
-    }
-}
-
-/// `G` and the determinant of `1 + measure`, which must be positive definite; of the linear law,
-/// unit tensor and 1.
-#[inline]
-fn metric(rheology: Rheology, measure: &Symmetric) -> Result<(Symmetric, f64), Inverted> {
-    if rheology == Rheology::Linear {
-        return Ok((IDENTITY, 1.0));
-    }
-    let volume = 1.0 + dilatation(measure);
-    if volume > 0.0 && measure[0] > -1.0 {
-        Ok((inverse(&one_plus(measure)), volume))
-    } else {
-        Err(Inverted)
     }
 }
 

@@ -6,11 +6,12 @@
 
 use super::super::mesh::{CENTRE, Element, POINTS};
 use super::Inverted;
-use super::flow::{Relaxation, Weights, window};
+use super::flow::Relaxation;
 use super::lanes::{Lanes, Rule};
 use super::long::Value;
+use super::passage::{Line, relax};
 use super::point::{Conversion, Law, Memory, Point};
-use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric, difference};
+use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric};
 use wide::f64x4;
 
 /// What all rows share: the rubber and its memory at one speed.
@@ -67,7 +68,7 @@ pub(super) struct Row {
     /// At the Gauss points.
     pub gauss: Linearised<f64x4>,
     pub centre: Linearised<f64>,
-    /// One kind of points after another, columns first; under the linear law alone.
+    /// One kind of points after another, columns first; for laws that are not in `C - 1` alone.
     pub conversions: Vec<Conversion>,
 }
 
@@ -96,12 +97,6 @@ impl Differences {
     }
 }
 
-/// Measures of a kind of points and the distances of their labels from the points before.
-struct Line {
-    measures: Vec<Symmetric>,
-    spacings: Vec<f64>,
-}
-
 impl Row {
     /// A row that has taken over no displacements yet; period and height of an element in m.
     pub fn new(
@@ -111,7 +106,7 @@ impl Row {
         material: &Material,
     ) -> Self {
         let points = POINTS * columns;
-        let converted = material.rubber.rheology == Rheology::Linear;
+        let converted = !material.rubber.rheology.is_in_green_strain();
         Self {
             element,
             width: period / columns as f64,
@@ -330,74 +325,6 @@ impl Row {
     }
 }
 
-/// The internal measure from one point to the next.
-struct Passage<'a> {
-    weights: &'a (Weights, Weights),
-    measures: [Symmetric; 4],
-    before: Symmetric,
-    after: Symmetric,
-    /// The measure less the internal one after it.
-    lag: Symmetric,
-}
-
-impl Passage<'_> {
-    /// What the tangent needs of the flow rule.
-    fn memory(&self, length: f64) -> Memory {
-        let (weights, slopes) = self.weights;
-        Memory {
-            forgotten: 1.0 - weights.decay,
-            weights: weights.of,
-            source: step(slopes, &self.before, &self.measures).map(|source| source / length),
-            ..Memory::default()
-        }
-    }
-}
-
-#[inline]
-fn step(weights: &Weights, before: &Symmetric, measures: &[Symmetric; 4]) -> Symmetric {
-    [0, 1, 2].map(|i| {
-        let of: f64 = (0..4).map(|k| weights.of[k] * measures[k][i]).sum();
-        weights.decay * before[i] + of
-    })
-}
-
-/// Follows the flow rule of a branch over the period.
-fn relax(relaxation: &Relaxation, line: &Line, mut visit: impl FnMut(usize, &Passage<'_>)) {
-    let weights: Vec<(Weights, Weights)> = line
-        .spacings
-        .iter()
-        .map(|spacing| Weights::with_slopes(spacing / relaxation.length))
-        .collect();
-    let mut state = [0.0; 3];
-    let start = relaxation.start(&line.spacings);
-    for (column, weights) in weights.iter().enumerate().skip(start) {
-        state = step(&weights.0, &state, &window(&line.measures, column));
-    }
-    let whole = relaxation.whole_period();
-    let last = line.measures[line.measures.len() - 1];
-    let mut lag = [0, 1, 2].map(|i| last[i] - state[i] / whole);
-    for (column, weights) in weights.iter().enumerate() {
-        let measures = window(&line.measures, column);
-        let before = difference(&measures[1], &lag);
-        lag = follow(&weights.0, &lag, &measures);
-        let after = difference(&measures[2], &lag);
-        visit(column, &Passage { weights, measures, before, after, lag });
-    }
-}
-
-/// What the measure is ahead of the internal one at the next point. As a difference of the two it would have the
-/// round-off of both, which the glassy modulus of a branch that follows nearly at once turns into a force as
-/// large as 1e-9 of the contact's on 8192 columns.
-#[inline]
-fn follow(weights: &Weights, lag: &Symmetric, measures: &[Symmetric; 4]) -> Symmetric {
-    let [w0, w1, _, w3] = weights.of;
-    [0, 1, 2].map(|i| {
-        let [m0, m1, m2, m3] = measures.map(|measure| measure[i]);
-        let less = m2 - m1;
-        weights.decay * (lag[i] + less) + (w0 * (m2 - m0) + w1 * less + w3 * (m2 - m3))
-    })
-}
-
 /// The column before, periodic.
 #[inline]
 pub(super) fn before(column: usize, columns: usize) -> usize {
@@ -425,44 +352,5 @@ pub(super) fn scatter<T: Lanes>(
         let force = &mut forces[node / 2][at..at + 2];
         force[0] += (rule.weight * (stress[0] * *along + stress[1] * *up)).sum();
         force[1] += (rule.weight * (stress[2] * *along + stress[3] * *up)).sum();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lags do not know the mean of the measures. As differences of two strains they would, by 1e-16 of it: for a
-    /// branch that follows within 1e-5 of a point, 1e-8 of the lag.
-    #[test]
-    fn lags_of_fast_branches_keep_their_digits_beside_a_large_strain() {
-        let columns = 64;
-        let lags = |mean: f64, length: f64| -> Vec<Symmetric> {
-            // Multiples of 2^-30, so that a mean of 4096 changes no digit of them.
-            let digit = 2_f64.powi(-30);
-            let measure = |n: usize| {
-                let angle = std::f64::consts::TAU * n as f64 / columns as f64;
-                let value = (1e-3 * angle.sin() / digit).round() * digit;
-                [mean + value, mean - value, mean + 2.0 * value]
-            };
-            let line = Line {
-                measures: (0..columns).map(measure).collect(),
-                spacings: vec![1.0 / columns as f64; columns],
-            };
-            let mut lags = Vec::new();
-            relax(&Relaxation { length, period: 1.0 }, &line, |_, passage| lags.push(passage.lag));
-            lags
-        };
-        for length in [1e-7, 1e-5] {
-            let (still, sheared) = (lags(0.0, length), lags(4096.0, length));
-            let largest = still.iter().map(|lag| lag[0].abs()).fold(0.0, f64::max);
-            // The first points still know the round-off they began with.
-            for (still, sheared) in still.iter().zip(&sheared).skip(4) {
-                for i in 0..3 {
-                    let difference = (still[i] - sheared[i]).abs();
-                    assert!(difference < 1e-13 * largest, "{length}: {still:?} {sheared:?}");
-                }
-            }
-        }
     }
 }

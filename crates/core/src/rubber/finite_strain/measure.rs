@@ -1,6 +1,5 @@
 //! The strain measure that a law is written in.
 
-use super::Rheology;
 use super::logarithm::Logarithm;
 use super::symmetric::Symmetric;
 
@@ -11,17 +10,6 @@ pub enum Measure {
     Green(Symmetric),
     /// `m = ln C`.
     Logarithmic(Logarithm),
-}
-
-impl Rheology {
-    /// The measure of this law at the strain `C - 1`; none where the law has none, since `C` is not
-    /// positive definite.
-    pub fn measure(self, strain: &Symmetric) -> Option<Measure> {
-        match self {
-            Self::NeoHookean => Some(Measure::Green(*strain)),
-            Self::Linear => Logarithm::of(strain).map(Measure::Logarithmic),
-        }
-    }
 }
 
 impl Measure {
