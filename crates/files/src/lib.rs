@@ -1,4 +1,9 @@
 //! Files that a user gives: read whole, if they are plain files of a size that makes sense.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`name`] | names and paths as text without loss |
+//! | `toml_error` | mistakes in TOML with line and nearest key |
 
 pub mod name;
 mod toml_error;

@@ -4,6 +4,19 @@
 //! ([`mod@file`]); of text files, units, columns and markers of missing points come from a description
 //! in the recipe (a sheet of a workbook is text to it: [`spreadsheet`]), and what does not fit it is an error that names the line and the key to change.
 //! [`text_shape`] looks at a text and proposes such a description.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `source`, `packed` | a file as a stream of known length; how far compressed data may unpack |
+//! | [`mod@file`] | files of instruments |
+//! | [`description`] | the description of a text file |
+//! | `text`, [`spreadsheet`] | text files and sheets of workbooks, read as a description says |
+//! | `decode`, `lines`, `last_number`, `thousands` | lines and words of a text; numbers that were cut off; separated thousands |
+//! | `lattice` | the grid of a height map whose points are listed one by one |
+//! | [`text_shape`] | what a text looks like, and the description that would read it |
+//! | [`sweeps`] | measured moduli and shift factors |
+//! | [`error`] | what can be wrong with a scan file |
+//! | `cases` | tests on files from laboratories |
 
 #[cfg(test)]
 mod cases;

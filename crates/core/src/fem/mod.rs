@@ -11,7 +11,7 @@
 //! |---|---|
 //! | [`profile`] | the rigid profile: height, slope and curvature anywhere |
 //! | [`mesh`] | graded rows of parallelograms, the integration of an element |
-//! | [`unknowns`] | the unknowns of a block whose upper edge moves as a whole |
+//! | `unknowns` | the unknowns of a block whose upper edge moves as a whole |
 //! | [`cost`] | what contacts cost |
 //! | [`error`] | what can go wrong |
 //!
@@ -25,4 +25,4 @@ pub mod mesh;
 pub mod profile;
 pub mod steady;
 pub mod transient;
-pub mod unknowns;
+mod unknowns;

@@ -1,4 +1,13 @@
 //! Mathematics without physics and without files.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`bracket`] | the root of a growing function |
+//! | [`direct`] | sparse LU factors of blocks of two unknowns a node, by nested dissection |
+//! | [`interpolation`] | cubic Hermite interpolants |
+//! | [`interrupt`] | the wish of a user to stop a long computation |
+//! | [`krylov`] | GMRES for matrix-free, nonsymmetric systems |
+//! | [`statistics`] | means, spreads and confidence intervals of small samples, lines through points |
 
 pub mod bracket;
 pub mod direct;

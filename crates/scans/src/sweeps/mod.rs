@@ -4,6 +4,13 @@
 //! describes the columns; units are never guessed. Separator, encoding and decimal mark follow from
 //! the content where only one reading is possible. A file may hold several tables, one behind the
 //! other, as instruments export a sweep for each temperature.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `grid` | a file as rows of cells |
+//! | `names`, `layout` | quantity and unit of a column by its name; which column holds what |
+//! | `rows` | the numbers below a header |
+//! | `doubts` | warnings of numbers that look like a mistake of units or columns |
 
 #[cfg(test)]
 mod bundled;

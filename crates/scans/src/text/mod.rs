@@ -1,4 +1,9 @@
 //! Text files of one point per line.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `rows`, `columns`, `number` | lines as cells, the cells of position and height, cells as numbers |
+//! | `map` | height maps: x, y and z on each line |
 
 mod columns;
 mod map;

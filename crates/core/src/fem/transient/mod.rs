@@ -19,6 +19,17 @@
 //! Under [`Rheology::Linear`](crate::rubber::Rheology::Linear) the shear stress has a maximum, at a
 //! logarithmic stretch of 1.2 in a relaxed, incompressible rubber: elements sheared beyond it give
 //! way, and the run ends with [`TransientError::Stopped`].
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `drag` | pressing in and dragging, with steps as long as they converge |
+//! | `step` | one implicit step: Newton on the equilibrium, Uzawa on the contact pressures |
+//! | `predictor` | the state from which a step is iterated |
+//! | `block`, `point`, `flow` | internal forces and their tangent; the law at a point; the flow rule over a step |
+//! | `contact` | forces between the lower edge and the profile |
+//! | `tangent` | the sparse matrix of block and contact, and its factors |
+//! | `setup` | the mesh and the block at rest |
+//! | `options`, `solution`, `error` | parameters, the time series of a drag, what can go wrong |
 
 mod block;
 mod contact;

@@ -2,6 +2,14 @@
 //!
 //! Encoding, separator, decimal mark, header and columns are found from the content, units only
 //! where the file states them. Nothing is read by this: it is a proposal for the recipe.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `encoding` | the encoding, by the content |
+//! | `layout` | ways to split lines into cells, and the lines of points that they find |
+//! | `names` | names of columns, units and the mark where data begin |
+//! | `missing` | marks of missing heights |
+//! | `proposal` | the description that would read the text |
 
 pub(crate) mod encoding;
 mod layout;

@@ -7,7 +7,15 @@
 //! ```
 //!
 //! to round-off without a window, and with one for the weighted heights (see [`Window`]). Half of it is the two-sided density of Persson's formulae. The
-//! heights are taken about the mean line: what is left of a mean stands at `q = 0`.
+//! heights are taken about the mean line: what is left of a mean is at `q = 0`.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `window` | windows on the heights of a complete scan |
+//! | `bins` | means over bins of equal width in the logarithm of the wavenumber |
+//! | `hurst` | Hurst exponent from the slope |
+//! | `isotropic` | the spectrum of an isotropic surface from that of a line across it |
+//! | `agreement` | comparison with the height-difference correlation |
 
 mod agreement;
 mod bins;

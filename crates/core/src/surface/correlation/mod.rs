@@ -304,8 +304,8 @@ fn direct_value(heights: &[f64], lag: usize) -> f64 {
 
 /// Smallest `2^a 3^b 5^c`, at least `minimum`: the lengths at which the FFT is fast.
 fn smooth_length(minimum: usize) -> usize {
-    let is_smooth = |n: &usize| {
-        let mut rest = *n;
+    let is_smooth = |n: usize| {
+        let mut rest = n;
         for factor in [2_usize, 3, 5] {
             while rest.is_multiple_of(factor) {
                 rest /= factor;
@@ -313,7 +313,11 @@ fn smooth_length(minimum: usize) -> usize {
         }
         rest == 1
     };
-    (minimum.max(1)..).find(is_smooth).expect("a power of two follows every number")
+    let mut length = minimum.max(1);
+    while !is_smooth(length) {
+        length += 1;
+    }
+    length
 }
 
 /// Correlations of scans, in parallel, in the order of the scans.
