@@ -15,7 +15,7 @@ pub use standards::{
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::ingest::read_windows;
-use super::{Stage, StageError, schema_of};
+use super::{Stage, StageError, keys, schema_of};
 use crate::artifact::{Metadata, ResultFile, Row, RunView, SchemaVersion};
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
@@ -546,7 +546,10 @@ fn self_affine(
     for (name, fit) in names.iter().zip(fits) {
         match fit {
             Ok(fit) => rows.push(self_affine_row(name, &fit)),
-            Err(error) => failed.push(((*name).to_owned(), error.to_string())),
+            Err(error) => {
+                let reason = format!("{error}{}", keys::of_self_affine(&error));
+                failed.push(((*name).to_owned(), reason));
+            }
         }
     }
     let told = warnings::left_out("windows", names.len(), "self-affine fit", &failed);
@@ -562,7 +565,10 @@ fn self_affine(
                 );
             }
         }
-        Err(error) => warnings.push(format!("no self-affine fit of the average: {error}")),
+        Err(error) => {
+            let keys = keys::of_self_affine(&error);
+            warnings.push(format!("no self-affine fit of the average: {error}{keys}"));
+        }
     }
     (rows, warnings)
 }

@@ -43,10 +43,7 @@ pub enum CurveError<E> {
     #[error("area fractions must ascend and lie between 0 and 1, found {0:?}")]
     Targets(Vec<f64>),
     /// Solves do not settle on a curve.
-    #[error(
-        "friction over contact area did not settle on a curve within {solves} solves; raise \
-         bem.tolerance or use more points"
-    )]
+    #[error("friction over contact area did not settle on a curve within {solves} solves")]
     NotSmooth {
         /// Solves so far.
         solves: usize,

@@ -106,7 +106,7 @@ pub enum FitError {
     /// The same frequency twice at one temperature.
     #[error(
         "the frequency {frequency_hz} Hz stands twice in one sweep: average the points, or give each \
-         temperature in temperature_c"
+         its temperature"
     )]
     Duplicate {
         /// Frequency in Hz.
@@ -130,7 +130,7 @@ pub enum FitError {
         "the sweeps at {colder_c} °C (storage modulus {:.4} to {:.4} MPa) and {hotter_c} °C ({:.4} to {:.4} MPa) \
          cannot be shifted onto each other: they have fewer than two points each in common storage moduli, and \
          loss modulus and tan delta do not join them either. Measure at a temperature between them or over more \
-         frequencies, give shift factors that you know with --shift-factors, or fit them apart",
+         frequencies, give shift factors that you know, or fit them apart",
         .colder_mpa[0], .colder_mpa[1], .hotter_mpa[0], .hotter_mpa[1]
     )]
     NoOverlap {
@@ -169,14 +169,11 @@ pub enum FitError {
     /// Shift factors for a master curve without a temperature, none of them 1.
     #[error(
         "the moduli have no temperature and none of the shift factors is 1: give the temperature of the master \
-         curve with --reference-temperature-c"
+         curve"
     )]
     NoReference,
     /// A vertical shift asks for absolute temperatures.
-    #[error(
-        "a vertical shift needs the temperatures of several sweeps: add the column temperature_c, or leave out \
-         --vertical-shift"
-    )]
+    #[error("a vertical shift needs sweeps at several temperatures")]
     VerticalWithoutTemperature,
     /// No number of terms, or not the wanted one, gives a rubber.
     #[error(

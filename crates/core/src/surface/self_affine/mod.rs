@@ -77,8 +77,7 @@ pub struct SelfAffineFit {
 pub enum SelfAffineError {
     /// Too few lags.
     #[error(
-        "{lags} lags between {:.4} and {:.4} mm, at least {FEWEST_ON_SLOPE} are needed; lower \
-         characterise.self_affine_shortest_lag_mm, or raise self_affine_longest_lag_mm or longest_lag_mm",
+        "{lags} lags between {:.4} and {:.4} mm, at least {FEWEST_ON_SLOPE} are needed",
         shortest * 1e3, longest * 1e3
     )]
     TooFewLags {
@@ -92,7 +91,7 @@ pub enum SelfAffineError {
     /// No logarithm.
     #[error(
         "the correlation at a lag of {:.4} mm is {value} m2, no positive number: the scan is flat or \
-         repeats itself there; characterise.self_affine_longest_lag_mm ends the fit before",
+         repeats itself there",
         lag * 1e3
     )]
     NotPositive {
@@ -102,10 +101,7 @@ pub enum SelfAffineError {
         value: f64,
     },
     /// The correlation does not grow with the lag.
-    #[error(
-        "the fit gave H = {hurst_exponent}, the correlation does not grow with the lag; shorten the \
-         range, characterise.self_affine_shortest_lag_mm to self_affine_longest_lag_mm"
-    )]
+    #[error("the fit gave H = {hurst_exponent}, the correlation does not grow with the lag")]
     NotGrowing {
         /// The Hurst exponent found.
         hurst_exponent: f64,
