@@ -46,7 +46,9 @@ pub const POINTS_RANGE: std::ops::RangeInclusive<usize> = 8..=1 << 24;
 /// ```
 pub struct SlidingContact {
     speed: f64,
-    grids: Vec<Grid>,
+    /// Grids that a solve starts on, the coarsest first.
+    coarser: Vec<Grid>,
+    finest: Grid,
     slopes: Vec<f64>,
     height_range: f64,
     interrupt: Interrupt,
@@ -98,16 +100,17 @@ impl SlidingContact {
             check_interrupt(interrupt)?;
             Ok(Grid::new(&mut planner, rubber, speed, period, heights)?)
         };
-        let mut grids = vec![grid(centred)?];
-        while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
-            let coarser = coarsen(&grids[grids.len() - 1].heights);
-            grids.push(grid(coarser)?);
+        let mut finest = grid(centred)?;
+        let mut coarser = Vec::new();
+        let mut coarsest = &finest.heights;
+        while coarsest.len() >= 2 * COARSEST_POINTS {
+            coarser.push(grid(coarsen(coarsest))?);
+            coarsest = coarser.last().map_or(&finest.heights, |grid: &Grid| &grid.heights);
         }
-        let finest = &mut grids[0];
+        coarser.reverse();
         let slopes = finest.space.slope(&finest.heights);
-        grids.reverse();
         let (height_range, interrupt) = (extremes.1 - extremes.0, interrupt.clone());
-        Ok(Self { speed, grids, slopes, height_range, interrupt })
+        Ok(Self { speed, coarser, finest, slopes, height_range, interrupt })
     }
 
     /// Number of points of the finest grid.
@@ -164,9 +167,10 @@ impl SlidingContact {
         self.height_range
     }
 
-    /// The smallest mean pressure in Pa of full contact: nowhere is its pressure a tension then.
-    pub fn full_contact_limit(&mut self) -> f64 {
-        -self.full_contact_pressure().into_iter().fold(0.0_f64, f64::min)
+    /// Smallest mean pressure in Pa at which the pressure is nowhere a tension in full contact;
+    /// zero for a flat profile.
+    pub fn smallest_full_contact_pressure(&mut self) -> f64 {
+        -self.full_contact_pressure().into_iter().fold(0.0, f64::min)
     }
 
     /// In full contact the pressure follows from the heights at once; it is the solution if it is
@@ -176,7 +180,7 @@ impl SlidingContact {
         if pressure.iter().any(|t| mean_pressure + t < 0.0) {
             return None;
         }
-        let finest = self.grids.last_mut()?;
+        let finest = &mut self.finest;
         let fields = Fields {
             mean_pressure,
             mean_separation: 0.0,
@@ -193,11 +197,8 @@ impl SlidingContact {
 
     /// The mean-free part of the pressure in full contact, in Pa.
     pub(super) fn full_contact_pressure(&mut self) -> Vec<f64> {
-        let points = self.points();
-        let mut pressure = vec![0.0; points];
-        if let Some(finest) = self.grids.last_mut() {
-            finest.space.pressure(&finest.heights, &mut pressure);
-        }
+        let mut pressure = vec![0.0; self.points()];
+        self.finest.space.pressure(&self.finest.heights, &mut pressure);
         pressure
     }
 
@@ -206,44 +207,32 @@ impl SlidingContact {
         mean_pressure: f64,
     ) -> Result<(ContactSolution, Outcome), ContactError> {
         let points = self.points();
-        let coarsest = &self.grids[0];
+        let coarsest = self.coarser.first().unwrap_or(&self.finest);
         let mut pressure = vec![mean_pressure; coarsest.heights.len()];
         let mut coarser_edges = coarsest.edges.clone();
         let mut applications = 0.0;
-        for grid in &mut self.grids {
-            let finest = grid.heights.len() == points;
-            let goal =
-                if finest { Goal::Solution { tolerance: INNER_TOLERANCE } } else { Goal::Start };
-            let mut contact = Contact {
-                displacement: vec![0.0; grid.heights.len()],
-                pressure: refine(&pressure, &coarser_edges, grid.heights.len()),
-                space: &mut grid.space,
-                heights: &grid.heights,
-                kernel: &grid.kernel,
-                mean_pressure,
-                mean_separation: 0.0,
-                interrupt: &self.interrupt,
-            };
-            let outcome = contact.solve(goal);
+        for grid in &mut self.coarser {
+            let start = refine(&pressure, &coarser_edges, grid.heights.len());
+            let mut contact = grid.contact(start, mean_pressure, &self.interrupt);
+            let outcome = contact.solve(Goal::Start);
             check_interrupt(&self.interrupt)?;
+            pressure = contact.pressure;
             applications += (outcome.applications * grid.heights.len()) as f64 / points as f64;
-            if !finest {
-                pressure = contact.pressure;
-                coarser_edges.clone_from(&grid.edges);
-                continue;
-            }
-            let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
-            let heights = &grid.heights;
-            let slopes = &self.slopes;
-            let edges = &grid.edges;
-            let fields =
-                Fields { mean_pressure, mean_separation, pressure, heights, slopes, edges };
-            let mut solution = fields.evaluate(&mut grid.space);
-            solution.iterations = outcome.iterations;
-            solution.operator_applications = applications;
-            return Ok((solution, outcome));
+            coarser_edges.clone_from(&grid.edges);
         }
-        unreachable!("there is always a finest grid")
+        let start = refine(&pressure, &coarser_edges, points);
+        let mut contact = self.finest.contact(start, mean_pressure, &self.interrupt);
+        let outcome = contact.solve(Goal::Solution { tolerance: INNER_TOLERANCE });
+        check_interrupt(&self.interrupt)?;
+        applications += (outcome.applications * points) as f64 / points as f64;
+        let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
+        let Self { finest, slopes, .. } = self;
+        let Grid { space, heights, edges, .. } = finest;
+        let fields = Fields { mean_pressure, mean_separation, pressure, heights, slopes, edges };
+        let mut solution = fields.evaluate(space);
+        solution.iterations = outcome.iterations;
+        solution.operator_applications = applications;
+        Ok((solution, outcome))
     }
 }
 
@@ -263,6 +252,25 @@ impl Grid {
         space.displacement(&unit, &mut kernel);
         let edges = EdgeReader::new(rubber, speed, period / points as f64);
         Ok(Self { space, heights, kernel, edges })
+    }
+
+    /// The contact on this grid, to be solved from a `pressure` in Pa.
+    fn contact<'a>(
+        &'a mut self,
+        pressure: Vec<f64>,
+        mean_pressure: f64,
+        interrupt: &'a Interrupt,
+    ) -> Contact<'a> {
+        Contact {
+            displacement: vec![0.0; self.heights.len()],
+            pressure,
+            space: &mut self.space,
+            heights: &self.heights,
+            kernel: &self.kernel,
+            mean_pressure,
+            mean_separation: 0.0,
+            interrupt,
+        }
     }
 }
 

@@ -45,8 +45,9 @@ const SOFTENED_LAWS: usize = 12;
 pub struct SoftContact {
     speed: f64,
     law: LocalLaw,
-    /// From the coarsest to the finest.
-    grids: Vec<Grid>,
+    /// Grids that a solve starts on, the coarsest first.
+    coarser: Vec<Grid>,
+    finest: Grid,
     slopes: Vec<f64>,
     interrupt: Interrupt,
 }
@@ -92,15 +93,16 @@ impl SoftContact {
             Ok(Grid::new(&mut planner, rubber, speed, period, heights)
                 .map_err(ContactError::Rubber)?)
         };
-        let mut grids = vec![grid(remove_mean(heights))?];
-        while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
-            let coarser = coarsen(&grids[grids.len() - 1].heights);
-            grids.push(grid(coarser)?);
+        let mut finest = grid(remove_mean(heights))?;
+        let mut coarser = Vec::new();
+        let mut coarsest = &finest.heights;
+        while coarsest.len() >= 2 * COARSEST_POINTS {
+            coarser.push(grid(coarsen(coarsest))?);
+            coarsest = coarser.last().map_or(&finest.heights, |grid: &Grid| &grid.heights);
         }
-        let finest = &mut grids[0];
+        coarser.reverse();
         let slopes = finest.space.slope(&finest.heights);
-        grids.reverse();
-        Ok(Self { speed, law, grids, slopes, interrupt: interrupt.clone() })
+        Ok(Self { speed, law, coarser, finest, slopes, interrupt: interrupt.clone() })
     }
 
     /// Number of points of the finest grid.
@@ -129,31 +131,27 @@ impl SoftContact {
             }));
         }
         let points = self.points();
-        let mut coarser: Option<(State, f64)> = None;
+        let mut known: Option<(State, f64)> = None;
         let mut applications = 0.0;
-        for level in 0..self.grids.len() {
-            let tolerance =
-                if level + 1 == self.grids.len() { INNER_TOLERANCE } else { START_TOLERANCE };
-            let mut newton = self.grids[level].newton(&self.law, mean_pressure, &self.interrupt);
-            let n = newton.heights.len();
-            let mut state = match coarser.take() {
-                Some((state, compliance)) => refine(&newton, &state, compliance),
-                None => flat_start(&newton),
-            };
-            let (outcome, softened) = solve_grid(&mut newton, &mut state, tolerance);
+        for grid in &mut self.coarser {
+            let n = grid.heights.len();
+            let mut newton = grid.newton(&self.law, mean_pressure, &self.interrupt);
+            let mut state = start(&newton, known.take());
+            let (outcome, _) = solve_grid(&mut newton, &mut state, START_TOLERANCE);
             check_interrupt(&self.interrupt)?;
             applications += (outcome.krylov_iterations * n) as f64 / points as f64;
-            if n < points {
-                coarser = Some((state, newton.coordinate_compliance()));
-                continue;
-            }
-            let mut solution = self.judge(mean_pressure, state)?;
-            solution.iterations = outcome.iterations;
-            solution.operator_applications = applications;
-            solution.softened = softened;
-            return self.accept(solution);
+            known = Some((state, newton.coordinate_compliance()));
         }
-        unreachable!("there is always a finest grid")
+        let mut newton = self.finest.newton(&self.law, mean_pressure, &self.interrupt);
+        let mut state = start(&newton, known);
+        let (outcome, softened) = solve_grid(&mut newton, &mut state, INNER_TOLERANCE);
+        check_interrupt(&self.interrupt)?;
+        applications += (outcome.krylov_iterations * points) as f64 / points as f64;
+        let mut solution = self.judge(mean_pressure, state)?;
+        solution.iterations = outcome.iterations;
+        solution.operator_applications = applications;
+        solution.softened = softened;
+        self.accept(solution)
     }
 
     fn judge(
@@ -161,8 +159,7 @@ impl SoftContact {
         mean_pressure: f64,
         state: State,
     ) -> Result<SoftContactSolution, SoftContactError> {
-        let finest = self.grids.len() - 1;
-        let grid = &mut self.grids[finest];
+        let grid = &mut self.finest;
         let fields = Fields {
             mean_pressure,
             approach: state.approach,
@@ -255,6 +252,14 @@ fn solve_grid(newton: &mut Newton, state: &mut State, tolerance: f64) -> (Outcom
         }
     }
     (total, true)
+}
+
+/// The state that a grid starts from: that of the coarser grid with its compliance, or the mean pressure.
+fn start(newton: &Newton, coarser: Option<(State, f64)>) -> State {
+    match coarser {
+        Some((state, compliance)) => refine(newton, &state, compliance),
+        None => flat_start(newton),
+    }
 }
 
 /// The mean pressure everywhere.
