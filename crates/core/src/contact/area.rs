@@ -1,4 +1,4 @@
-//! The pressure for a wanted contact area.
+//! The pressure that gives a contact area.
 
 use super::{ContactError, ContactSolution, SlidingContact};
 use crate::numerics::bracket::{self, End};
@@ -17,10 +17,9 @@ impl SlidingContact {
     /// inside a bracket (Anderson & Björck 1973, doi:10.1007/BF01951936).
     ///
     /// # Errors
-    /// [`ContactError::OutOfRange`] for a fraction outside `(0, 1]` or a tolerance outside
-    /// `(0, 1)`; [`ContactError::AreaNotReached`] with the nearest area if no pressure gives the
-    /// wanted one: a flat profile, or a contact too small for the grid;
-    /// [`ContactError::NotConverged`] as in [`Self::solve`].
+    /// [`ContactError::OutOfRange`] for a fraction outside `(0, 1]` or a tolerance outside `(0, 1)`;
+    /// [`ContactError::AreaNotReached`] with the nearest area if no pressure gives it: a flat profile, or a contact too
+    /// small for the grid; [`ContactError::NotConverged`] as in [`Self::solve`].
     pub fn solve_for_area(
         &mut self,
         fraction: f64,
@@ -41,7 +40,7 @@ impl SlidingContact {
 
     /// The contact whose area is the nearest to `fraction` that was found: to a relative `tolerance` of the
     /// area if the grid has such a contact. On a grid the area jumps where the contact of a lossy rubber
-    /// spreads from one point to the next; whether the nearest one is near enough is for the caller to say.
+    /// spreads from one point to the next; the caller decides whether the nearest one is near enough.
     ///
     /// # Errors
     /// As [`Self::solve_for_area`]; [`ContactError::AreaNotReached`] for a flat profile only.
@@ -122,7 +121,7 @@ impl<'a> Search<'a> {
         Ok(search.best)
     }
 
-    /// Logarithm of the area at a pressure over the wanted one; keeps the nearest solution.
+    /// Logarithm of the area at a pressure over the one sought; keeps the nearest solution.
     fn error_at(&mut self, log_pressure: f64) -> Result<f64, ContactError> {
         let solution = self.contact.solve(log_pressure.exp())?;
         let error = self.error_of(&solution);

@@ -6,17 +6,15 @@ use rustfft::num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-/// Surface displacement of a viscoelastic half-space under a pressure that stands still in the
-/// frame of the profile, on `points` equidistant points of one period:
-/// `w_hat(q) = 2 / (|q| E_r(q v)) t_hat(q)` for `q != 0`, `w_hat(0) = 0`.
+/// Surface displacement of a viscoelastic half-space under a pressure that is steady in the frame of the profile, on
+/// `points` equidistant points of one period: `w_hat(q) = 2 / (|q| E_r(q v)) t_hat(q)` for `q != 0`, `w_hat(0) = 0`.
 ///
-/// The highest wave of a grid has no direction, so a symbol whose phase is not zero there jumps,
-/// and its kernel rings with alternating sign; contact sets then fray at the edges. The phase is
-/// therefore taken back smoothly towards the highest wave, `arg C` times
-/// `cos^2(π/2 (q/q_max)^2)`: a change of order `(q/q_max)^4` for the waves that the grid resolves,
-/// and no change at all for an elastic body.
+/// The highest wave of a grid has no direction, so a symbol whose phase is not zero there jumps, and its kernel rings
+/// with alternating sign; contact sets then fray at the edges. The phase is therefore tapered smoothly towards the
+/// highest wave, `arg C` times `cos^2(π/2 (q/q_max)^2)`: a change of order `(q/q_max)^4` for the waves that the grid
+/// resolves, and no change at all for an elastic body.
 ///
-/// Buffers are held here, so that an application allocates nothing.
+/// The operator owns its buffers, so that an application allocates nothing.
 pub struct HalfSpace {
     points: usize,
     period: f64,
@@ -29,7 +27,7 @@ pub struct HalfSpace {
     scratch: Vec<Complex64>,
 }
 
-/// Which way an application of the operator goes.
+/// Direction of an application of the operator.
 #[derive(Clone, Copy)]
 enum Direction {
     PressureToDisplacement,

@@ -18,7 +18,7 @@ pub(crate) const INNER_TOLERANCE: f64 = 2e-11;
 /// Grids are halved down to about this many points.
 pub(crate) const COARSEST_POINTS: usize = 64;
 
-/// The grids on which the contact can be asked for, and the rubber it is asked for.
+/// Numbers of grid points for which a contact can be set up.
 pub const POINTS_RANGE: std::ops::RangeInclusive<usize> = 8..=1 << 24;
 
 /// A rubber half-space sliding at constant speed over a rigid periodic profile.
@@ -69,7 +69,7 @@ impl SlidingContact {
     /// # Errors
     /// [`ContactError::OutOfRange`] for a period that is not positive, a speed that is not
     /// finite or a number of points outside [`POINTS_RANGE`]; [`ContactError::BadHeight`];
-    /// [`ContactError::Rubber`] for numbers that are no rubber, or if the modulus is not known at the
+    /// [`ContactError::Rubber`] for numbers that no rubber has, or if the modulus is not known at the
     /// frequency of a wave of the grid.
     pub fn new(
         rubber: &dyn Viscoelastic,
@@ -140,9 +140,8 @@ impl SlidingContact {
         self.accept(solution, Some(outcome))
     }
 
-    /// Lets a solution pass only if its residual, evaluated afresh, is small enough: the iteration
-    /// may have rested where it could not improve, and full contact under a pressure beyond the
-    /// reach of double precision is no solution either.
+    /// Returns a solution only if its residual, evaluated anew, is small enough: the iteration may have stalled above
+    /// the tolerance, and full contact under a pressure beyond the reach of double precision has a large residual too.
     fn accept(
         &self,
         solution: ContactSolution,
@@ -173,8 +172,7 @@ impl SlidingContact {
         -self.full_contact_pressure().into_iter().fold(0.0, f64::min)
     }
 
-    /// In full contact the pressure follows from the heights at once; it is the solution if it is
-    /// nowhere a tension.
+    /// Full contact, where the pressure follows from the heights directly; `None` if it would be a tension somewhere.
     pub(super) fn full_contact(&mut self, mean_pressure: f64) -> Option<ContactSolution> {
         let pressure = self.full_contact_pressure();
         if pressure.iter().any(|t| mean_pressure + t < 0.0) {
@@ -306,7 +304,7 @@ pub(crate) fn check(
     }
 }
 
-/// Heights about their mean. One height is taken off first, so that a flat profile becomes zero
+/// Heights about their mean. One height is subtracted first, so that a flat profile becomes zero
 /// and not the round-off of its mean.
 pub(crate) fn remove_mean(heights: &[f64]) -> Vec<f64> {
     let first = heights[0];

@@ -1,4 +1,4 @@
-//! What the microscale changes of the friction of a macro contact.
+//! The correction of the friction of a macro contact by the microscale.
 
 use super::LawError;
 use crate::numerics::interpolation::CubicHermite;
@@ -49,8 +49,8 @@ pub struct Correction {
     pub points: MeanFriction,
     /// Change of the contact area fraction.
     pub area: f64,
-    /// Estimated error of the friction at finite deformation by the mesh, weighted with the local pressures; none
-    /// if that of the microscale is not known.
+    /// Estimated error of the friction at finite deformation by the mesh, weighted with the local pressures; `None` if
+    /// that of the microscale is not known.
     pub discretisation_error: Option<f64>,
 }
 
@@ -74,7 +74,7 @@ impl MeanFriction {
         of_all_waves + self.gain(rule, of_all_waves) * self.difference()
     }
 
-    /// What the difference, and so its error, is multiplied with in [`Self::applied`]. Without friction on the
+    /// Factor of the difference, and of its error, in [`Self::applied`]. Without friction on the
     /// half-space, as of a rubber without loss, there is no ratio, and the difference is added.
     pub fn gain(self, rule: CorrectionRule, of_all_waves: f64) -> f64 {
         match rule {
@@ -210,7 +210,7 @@ impl Sums {
 
 /// Local mean pressures: the pressures of a periodic macro grid, averaged over `points` of them
 /// about each. The law and the friction of the microscale belong to a mean over one period of it;
-/// what the macro contact resolves below that means nothing.
+/// pressures that the macro contact resolves below that length have no meaning for it.
 pub fn running_mean(pressures: &[f64], points: usize) -> Vec<f64> {
     let n = pressures.len();
     let points = points.clamp(1, n);

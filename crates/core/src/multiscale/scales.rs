@@ -2,7 +2,7 @@
 
 use crate::surface::{SineScale, Wave};
 
-/// A profile taken apart.
+/// A profile divided into two scales.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scales {
     /// Waves with a root mean square slope above the threshold.
@@ -17,8 +17,8 @@ fn rms_slope(wave: &Wave) -> f64 {
 }
 
 impl Scales {
-    /// Parts the waves at an rms slope. A single micro wave has no phase of its own: it is set to
-    /// zero, so that all realisations share it.
+    /// Divides the waves at an rms slope. The phase of a single micro wave does not matter: it is set to zero, so that
+    /// all realisations share it.
     pub fn part(waves: &[Wave], threshold: f64) -> Self {
         let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
         let (mut micro, macroscale): (Vec<Wave>, Vec<Wave>) =

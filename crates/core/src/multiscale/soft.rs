@@ -14,15 +14,15 @@ use crate::numerics::Interrupt;
 use crate::rubber::{RubberError, Viscoelastic};
 use realfft::RealFftPlanner;
 
-/// Residual below which a coarser grid has done its duty.
+/// Residual at which the iteration on a coarser grid ends.
 const START_TOLERANCE: f64 = 1e-4;
 /// Factor from one softened law to the next harder one, and their number; the last step is to
 /// the law itself.
 const SOFTENING_FACTOR: f64 = 0.2;
 const SOFTENED_LAWS: usize = 12;
 
-/// A rubber half-space that slides at constant speed over the long waves of a rigid profile, the
-/// short waves of which answer by a [`LocalLaw`].
+/// A rubber half-space that slides at constant speed over the long waves of a rigid profile, whose short waves are
+/// represented by a [`LocalLaw`].
 ///
 /// Operators and transforms are kept. Every solve starts from scratch on the coarsest grid: its
 /// result does not depend on what was solved before.
@@ -226,8 +226,8 @@ impl Grid {
     }
 }
 
-/// Solves on one grid: at once, or, where that does not settle, over softened laws from one that
-/// is softer than the half-space, each started from the last.
+/// Solves on one grid: directly, or if that does not converge by a sequence of softened laws from one softer than the
+/// half-space, each started from the last.
 fn solve_grid(newton: &mut Newton, state: &mut State, tolerance: f64) -> (Outcome, bool) {
     let mut total = newton.solve(state, tolerance);
     if total.converged {

@@ -172,7 +172,11 @@ fn full_contact_of_a_wave_under_a_linear_law_is_exact() {
             let angle = TAU * i as f64 / points as f64;
             let exact = p + amplitude.re * angle.cos() - amplitude.im * angle.sin();
             approx::assert_relative_eq!(*pressure, exact, max_relative = 1e-7);
-            approx::assert_relative_eq!(solution.gap[i], touch - c * pressure, max_relative = 1e-9);
+            approx::assert_relative_eq!(
+                solution.separation[i],
+                touch - c * pressure,
+                max_relative = 1e-9
+            );
         }
     }
 }

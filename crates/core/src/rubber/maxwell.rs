@@ -30,7 +30,7 @@ pub struct Rubber {
     pub poisson_ratio: f64,
 }
 
-/// Why a set of numbers is not a rubber.
+/// Errors of the numbers of a rubber.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RubberError {
     /// A modulus or time that is not positive and finite.
@@ -63,7 +63,7 @@ pub enum RubberError {
         /// The largest value it takes.
         limit: f64,
     },
-    /// Measured moduli that are no curve.
+    /// Measured moduli at fewer than two frequencies.
     #[error("rubber {rubber} has moduli at {points} point(s), it needs at least two")]
     TooFewPoints {
         /// Name of the rubber.

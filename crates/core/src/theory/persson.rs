@@ -135,7 +135,7 @@ impl Persson {
     }
 }
 
-/// Places and shares of the Gauss rule of three points.
+/// Abscissae and weights of the Gauss rule of three points.
 const GAUSS: [(f64, f64); 3] = [
     (-0.774_596_669_241_483_4, 5.0 / 18.0),
     (0.0, 8.0 / 18.0),

@@ -1,4 +1,4 @@
-//! The pressure for a wanted contact area.
+//! The pressure that gives a contact area.
 
 use super::super::error::FemError;
 use super::SteadyContact;

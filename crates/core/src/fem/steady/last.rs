@@ -5,14 +5,14 @@ use super::path::Path;
 use super::solution::SteadySolution;
 use super::{NotConverged, SteadyContact};
 
-/// Points of a path that ended whose contact is closed, from the last one back, before it is given up.
+/// Points of an ended path, from the last one back, at which the exact contact is tried.
 const MOST_CLOSED: usize = 8;
-/// Halvings of what lies between the last such point and the next one that is none.
+/// Halvings of the interval between the last point with an exact contact and the first without.
 const MOST_HALVINGS: usize = 3;
 
 impl SteadyContact {
-    /// The highest pressure below a wanted one that has been solved. A profile of many scales has no other point:
-    /// to close contacts behind the barrier one after the other would cost more than a solution.
+    /// The highest solved pressure below `wanted`. For a profile of many scales only solved pressures count: to solve
+    /// the exact contact at points of the path would cost more than a solution.
     pub(super) fn last_solved(&self, wanted: f64) -> PathEnd {
         let below = self.solved.iter().filter(|(pressure, _)| *pressure < wanted);
         let last = below.max_by(|(one, _), (other, _)| one.total_cmp(other));
@@ -20,7 +20,7 @@ impl SteadyContact {
     }
 
     /// The highest point at which the contact converges, of the path that ended or of what was known
-    /// before; a coarser grid may have reached the `wanted` one, which says nothing of this one.
+    /// before; a coarser grid may have reached the `wanted` one, which proves nothing for this one.
     pub(super) fn last_converged(&mut self, ended: Option<Box<Path>>, wanted: f64) -> PathEnd {
         let known = self.path.take();
         let mut reached: Option<SteadySolution> = None;
@@ -28,7 +28,7 @@ impl SteadyContact {
             path.take_cost();
             let before = self.path.replace(path);
             let solution = self.last_of_path();
-            // Only a path on the grid of the ladder can be gone on with.
+            // Only a path on the grid of the ladder can be continued.
             let usable = self.path.as_ref().is_some_and(|path| {
                 solution.is_some()
                     && path.level.grid().contact_nodes() == self.ladder.path_columns()
@@ -62,8 +62,7 @@ impl SteadyContact {
         None
     }
 
-    /// Looks for a later exact solution than the one at the path, before a pressure at which there is
-    /// none.
+    /// Looks for an exact solution at a higher pressure than that of the path, below a pressure that has none.
     fn last_before(&mut self, mut last: SteadySolution, mut beyond: f64) -> SteadySolution {
         for _ in 0..MOST_HALVINGS {
             let Some(path) = self.path.as_mut() else { break };

@@ -1,15 +1,14 @@
 //! Steady sliding of a block of rubber over a rigid profile, at finite deformation.
 //!
-//! In the frame of the profile the field stands still, and the flow rule of a branch becomes
-//! `v dC_i/dξ = (C - C_i) / τ` along each material line, with the label `ξ = X + v t` of the rubber. One
-//! Newton solve replaces the some thousand time steps after which a transient solution is steady.
+//! In the frame of the profile the field is steady, and the flow rule of a branch becomes `v dC_i/dξ = (C - C_i) / τ`
+//! along each material line, with the label `ξ = X + v t` of the rubber. One Newton solve replaces some thousand time
+//! steps, after which a transient solution is steady.
 //!
-//! The grid is fixed to the profile: its columns stand at equidistant `x = s`, its rows are material
-//! lines `Z`, and what is unknown is which rubber is there, `ξ = s - q(s, Z)`, and how high it lies,
-//! `z = Z + w(s, Z)`. This is the bilinear element with nodes that are moved in the undeformed block in
-//! place of in space. So contact nodes stay above their points of the profile, gaps and slopes are
-//! linear and constant, resolution follows the surface in space, and no shear, however large, slants an
-//! element. It needs a surface that is a graph over x.
+//! The grid is fixed to the profile: its columns stand at equidistant `x = s`, its rows are material lines `Z`, and the
+//! unknowns are the label of the rubber there, `ξ = s - q(s, Z)`, and its height, `z = Z + w(s, Z)`. This is the
+//! bilinear element with nodes that move in the undeformed block instead of in space. So contact nodes stay above their
+//! points of the profile, gaps and slopes are linear and constant, resolution follows the surface in space, and no
+//! shear, however large, slants an element. It needs a surface that is a graph over x.
 //!
 //! Elements are bilinear; their volumetric part is integrated at the centre alone (selective
 //! reduced integration), which keeps them from locking at ν = 0.49.
@@ -23,15 +22,15 @@
 //! | `lanes` | points of an element side by side in vector registers |
 //! | `long` | displacements with the digits that double precision rounds off |
 //! | `contact` | force and gap of a node from one smooth unknown |
-//! | `local`, `stiffness` | the preconditioner: sparse factors of tangents with a short memory |
+//! | `local`, `stiffness` | the preconditioner: sparse factors of tangents with a short relaxation history |
 //! | `level`, `newton` | the equations on one grid, and Newton's method with GMRES |
 //! | `path`, `transfer` | growing pressure, finer grids, from the barrier to the exact contact |
-//! | `growth`, `lift` | profiles of many scales: octaves that grow at constant pressure |
+//! | `growth`, `lift` | profiles of many scales: octaves of waves added at constant pressure |
 //! | `ladder` | their exact contact, from coarse grids to fine ones |
 //! | `state` | the unknowns at a point of a path |
 //! | `last` | the last solution before a pressure that has none |
 //! | [`solution`] | friction, area, separation, dissipation and fields of a solved contact |
-//! | `area` | the pressure that gives a wanted contact area |
+//! | `area` | the pressure that gives a contact area |
 
 mod area;
 mod block;
@@ -78,19 +77,19 @@ use state::State;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Inverted;
 
-/// Newton's method or a path did not get there.
+/// Newton's method or a path did not converge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct NotConverged;
 
-/// Shortest waves on the period up to which a path sets out from a slight contact of the highest tip.
+/// Number of shortest waves on the period up to which a path starts from a slight contact of the highest tip.
 const MOST_WAVES_FROM_A_TIP: f64 = 4.0;
-/// Columns of the coarsest grid of a path on the shortest wave of the profile.
+/// Columns a shortest wave on the coarsest grid of a path.
 const COARSEST_PER_WAVE: f64 = 40.0;
 /// A block of rubber that slides at constant speed over a rigid periodic profile: plane strain,
 /// finite linear viscoelasticity, frictionless contact. The upper edge carries the dead pressure
 /// `p` per undeformed length and moves as a whole; lateral edges are periodic.
 ///
-/// Solutions for further pressures go on from those found before, which saves most of the work;
+/// Solutions for further pressures start from those found before, which saves most of the work;
 /// they agree with those from scratch within the residual.
 ///
 /// ```
@@ -144,8 +143,8 @@ impl SteadyContact {
         Ok(Self { setting, profile, options, path: None, ladder, solved: Vec::new() })
     }
 
-    /// A contact that a longer profile lets last for a `length` in m of sliding only, after which branches still carry a share
-    /// of the mean strain of a row: [`FiniteStrainRubber::in_a_contact_that_lasts`].
+    /// A contact that a longer profile lets last for a `length` in m of sliding only, after which branches still carry
+    /// a share of the mean strain of a row: [`FiniteStrainRubber::in_a_contact_that_lasts`].
     #[must_use]
     pub fn lasting(mut self, length: f64) -> Self {
         let Setting { finite, speed, .. } = &mut self.setting;
@@ -179,7 +178,7 @@ impl SteadyContact {
             });
         }
         let before = self.path.as_mut().map(|path| {
-            // What a refusal before has spent is not this one's.
+            // Work spent on an earlier refusal does not count for this pressure.
             path.take_cost();
             path.place()
         });
@@ -190,7 +189,7 @@ impl SteadyContact {
                 self.solved.push((pressure, PathEnd::at(&solution)));
                 Ok(solution)
             }
-            // Behind an interrupt every path ends.
+            // After an interrupt every path ends.
             Err(_) if self.setting.interrupt.is_set() => Err(FemError::Interrupted),
             Err(ended) => {
                 let reached = if self.refusals_leave_no_trace() {
@@ -213,9 +212,8 @@ impl SteadyContact {
         }
     }
 
-    /// Whether a pressure without a solution leaves the contact as it was, so that it need not be tried
-    /// again where the same pressures are solved anew: for a profile of many scales. Otherwise the contact is
-    /// at the last point that converged then.
+    /// Whether a pressure without a solution leaves the contact as it was, as for a profile of many scales: a replay of
+    /// the same pressures may skip it. Otherwise the contact is then at the last point that converged.
     pub fn refusals_leave_no_trace(&self) -> bool {
         has_many_scales(&self.profile)
     }
@@ -256,7 +254,7 @@ impl SteadyContact {
         }
     }
 
-    /// A path in pressure; a grid on which it ends hands on what it has reached to the next one.
+    /// A path in pressure; a grid on which it ends passes its last state to the next one.
     fn press(&mut self, pressure: f64) -> Result<(), NotConverged> {
         let first = self.setting.first_pressure(&self.profile).min(pressure);
         let mut arrived = Err(NotConverged);
@@ -276,7 +274,7 @@ impl SteadyContact {
                 match Path::start(level(), first) {
                     Ok(path) => self.path = Some(path),
                     Err(NotConverged) => {
-                        // What a coarser grid has reached is no solution on this one.
+                        // The state reached on a coarser grid does not solve this one.
                         arrived = Err(NotConverged);
                         continue;
                     }
@@ -301,15 +299,14 @@ impl SteadyContact {
         columns
     }
 
-    /// The exact solution at the point the path has reached, with all that was spent since the last
-    /// one.
+    /// The exact solution at the point the path has reached, with the work spent since the last one.
     fn conclude(&mut self) -> Result<SteadySolution, NotConverged> {
         let tolerance = self.ladder.path_tolerance();
         let exact = self.path.as_mut().ok_or(NotConverged)?.finish(tolerance)?;
         self.climb(exact)
     }
 
-    /// The solution on the wanted grid, from the exact contact on that of the path.
+    /// The solution on the finest grid, from the exact contact on the grid of the path.
     fn climb(&mut self, exact: (State, f64)) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
         let (setting, profile) = (&self.setting, &self.profile);
@@ -319,7 +316,7 @@ impl SteadyContact {
     }
 }
 
-/// Whether a profile has too many scales for a path that sets out from its highest tip.
+/// Whether a profile has too many scales for a path that starts from its highest tip.
 pub(super) fn has_many_scales(profile: &RigidProfile) -> bool {
     profile.shortest_waves() > MOST_WAVES_FROM_A_TIP
 }

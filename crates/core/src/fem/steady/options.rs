@@ -5,15 +5,15 @@ use super::super::mesh::{Grading, Mesh};
 use super::super::profile::RigidProfile;
 use std::ops::RangeInclusive;
 
-/// Growth of the rows on so many columns of a wave, and how many times that on fewer.
+/// Growth of the rows at so many columns a wave, and the largest multiple of it at fewer.
 const GROWTH: f64 = 0.2;
 const COLUMNS_OF_GROWTH: f64 = 64.0;
 const MOST_GROWTH: f64 = 2.0;
 /// Columns from which on rows coarsen by default.
 const MANY_COLUMNS: usize = 256;
-/// Columns for which a contact can be asked.
+/// Numbers of columns for which a contact can be set up.
 pub const COLUMNS_RANGE: RangeInclusive<usize> = 8..=1 << 16;
-/// Block heights, in periods, for which a contact can be asked.
+/// Block heights, in periods, for which a contact can be set up.
 pub const HEIGHT_RANGE: RangeInclusive<f64> = 0.1..=10.0;
 
 /// The block and its mesh.
@@ -25,7 +25,7 @@ pub struct BlockOptions {
     pub height_ratio: f64,
     /// Growth of the rows away from the contact.
     pub grading: Grading,
-    /// Whether rows that are flat against their height have half as many columns as those below.
+    /// Whether rows whose elements are higher than wide have half as many columns as those below.
     pub coarsening: bool,
 }
 
@@ -56,7 +56,7 @@ impl BlockOptions {
         Mesh::graded(self.columns, period, self.height_ratio * period, self.grading)
     }
 
-    /// Checks that every number is in its range.
+    /// Checks that every number is in range.
     ///
     /// # Errors
     /// [`FemError::OutOfRange`] for the first one that is not.

@@ -1,7 +1,7 @@
 //! The internal measures of a branch along a row, from one point to the next.
 
 use super::flow::{Relaxation, Weights, window};
-use super::point::Memory;
+use super::point::History;
 use crate::rubber::finite_strain::{Symmetric, difference};
 
 /// Measures of a kind of points and the distances of their labels from the points before.
@@ -22,13 +22,13 @@ pub(super) struct Passage<'a> {
 
 impl Passage<'_> {
     /// What the tangent needs of the flow rule.
-    pub fn memory(&self, length: f64) -> Memory {
+    pub fn history(&self, length: f64) -> History {
         let (weights, slopes) = self.weights;
-        Memory {
-            forgotten: 1.0 - weights.decay,
+        History {
+            relaxed: 1.0 - weights.decay,
             weights: weights.of,
             source: step(slopes, &self.before, &self.measures).map(|source| source / length),
-            ..Memory::default()
+            ..History::default()
         }
     }
 }
@@ -41,7 +41,7 @@ fn step(weights: &Weights, before: &Symmetric, measures: &[Symmetric; 4]) -> Sym
     })
 }
 
-/// Follows the flow rule of a branch over the period.
+/// Integrates the flow rule of a branch over the period and visits each column.
 pub(super) fn relax(
     relaxation: &Relaxation,
     line: &Line,
@@ -69,9 +69,9 @@ pub(super) fn relax(
     }
 }
 
-/// What the measure is ahead of the internal one at the next point. As a difference of the two it would have the
-/// round-off of both, which the glassy modulus of a branch that follows nearly at once turns into a force as
-/// large as 1e-9 of the contact's on 8192 columns.
+/// The measure less the internal one at the next point. As a difference of the two it would have the round-off of both;
+/// times the glassy modulus of a branch that relaxes fast, this is a force of 1e-9 of the contact force on 8192
+/// columns.
 #[inline]
 fn follow(weights: &Weights, lag: &Symmetric, measures: &[Symmetric; 4]) -> Symmetric {
     let [w0, w1, _, w3] = weights.of;
@@ -86,8 +86,8 @@ fn follow(weights: &Weights, lag: &Symmetric, measures: &[Symmetric; 4]) -> Symm
 mod tests {
     use super::*;
 
-    /// Lags do not know the mean of the measures. As differences of two strains they would, by 1e-16 of it: for a
-    /// branch that follows within 1e-5 of a point, 1e-8 of the lag.
+    /// Lags do not depend on the mean of the measures. As differences of two strains they would, by 1e-16 of it: for a
+    /// branch that relaxes within 1e-5 of a point, 1e-8 of the lag.
     #[test]
     fn lags_of_fast_branches_keep_their_digits_beside_a_large_strain() {
         let columns = 64;
@@ -110,7 +110,7 @@ mod tests {
         for length in [1e-7, 1e-5] {
             let (still, sheared) = (lags(0.0, length), lags(4096.0, length));
             let largest = still.iter().map(|lag| lag[0].abs()).fold(0.0, f64::max);
-            // The first points still know the round-off they began with.
+            // The first points still contain the round-off of the start.
             for (still, sheared) in still.iter().zip(&sheared).skip(4) {
                 for i in 0..3 {
                     let difference = (still[i] - sheared[i]).abs();

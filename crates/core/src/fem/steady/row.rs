@@ -1,8 +1,7 @@
 //! One row of elements: its forces, and the tangent with its relaxation history.
 //!
 //! The internal measure of a branch at a point follows from the measures of the points of the same
-//! kind in all elements of the row, so a row is the smallest piece whose forces follow from its
-//! displacements.
+//! kind in all elements of the row, so a row is the smallest part whose forces depend on its displacements alone.
 
 use super::super::mesh::{CENTRE, Element, POINTS};
 use super::Inverted;
@@ -10,11 +9,11 @@ use super::flow::Relaxation;
 use super::lanes::{Lanes, Rule};
 use super::long::Value;
 use super::passage::{Line, relax};
-use super::point::{Conversion, Law, Memory, Point};
+use super::point::{Conversion, History, Law, Point};
 use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric};
 use wide::f64x4;
 
-/// What all rows share: the rubber and its memory at one speed.
+/// What all rows share: the rubber and the lengths in which its branches relax at one speed.
 #[derive(Debug, Clone)]
 pub(super) struct Material {
     pub rubber: FiniteStrainRubber,
@@ -45,14 +44,14 @@ pub(super) struct Linearised<T> {
     /// One a column.
     pub points: Vec<Point<T>>,
     /// One branch after another, columns first.
-    pub memory: Vec<Memory<T>>,
+    pub history: Vec<History<T>>,
 }
 
 impl<T: Lanes> Linearised<T> {
     fn new(columns: usize, branches: usize) -> Self {
         Self {
             points: vec![Point::default(); columns],
-            memory: vec![Memory::default(); branches * columns],
+            history: vec![History::default(); branches * columns],
         }
     }
 }
@@ -79,7 +78,7 @@ pub(super) struct Differences {
     /// From the left to the right upper corner.
     upper: Vec<[f64; 2]>,
     /// From the lower to the upper left corner.
-    across: Vec<[f64; 2]>,
+    left: Vec<[f64; 2]>,
 }
 
 impl Differences {
@@ -91,14 +90,14 @@ impl Differences {
                 row.iter().zip(right).map(|(left, right)| right.minus(*left)).collect();
             differences.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
         };
-        let across = upper.chunks_exact(2).zip(lower.chunks_exact(2));
-        let across = across.map(|(upper, lower)| [0, 1].map(|i| upper[i].minus(lower[i])));
-        Self { lower: along(lower), upper: along(upper), across: across.collect() }
+        let left = upper.chunks_exact(2).zip(lower.chunks_exact(2));
+        let left = left.map(|(upper, lower)| [0, 1].map(|i| upper[i].minus(lower[i])));
+        Self { lower: along(lower), upper: along(upper), left: left.collect() }
     }
 }
 
 impl Row {
-    /// A row that has taken over no displacements yet; period and height of an element in m.
+    /// A row without displacements yet; period and height of an element in m.
     pub fn new(
         element: Element,
         columns: usize,
@@ -118,7 +117,7 @@ impl Row {
         }
     }
 
-    /// Takes over the displacements and returns the internal forces in N/m at the corners.
+    /// Sets the displacements and returns the internal forces in N/m at the corners.
     ///
     /// # Errors
     /// [`Inverted`]; the state of the row is then meaningless.
@@ -161,12 +160,12 @@ impl Row {
         }
     }
 
-    fn keep_memory(&mut self, kind: usize, [branch, column]: [usize; 2], memory: &Memory) {
+    fn keep_history(&mut self, kind: usize, [branch, column]: [usize; 2], history: &History) {
         let at = branch * self.columns + column;
         if kind == CENTRE {
-            self.centre.memory[at].set_lane(0, memory);
+            self.centre.history[at].set_lane(0, history);
         } else {
-            self.gauss.memory[at].set_lane(kind, memory);
+            self.gauss.history[at].set_lane(kind, history);
         }
     }
 
@@ -180,12 +179,12 @@ impl Row {
     }
 
     /// A branch at a point as the tangent knows it.
-    pub fn memory(&self, kind: usize, [branch, column]: [usize; 2]) -> Memory {
+    pub fn history(&self, kind: usize, [branch, column]: [usize; 2]) -> History {
         let at = branch * self.columns + column;
         if kind == CENTRE {
-            self.centre.memory[at].lane(0)
+            self.centre.history[at].lane(0)
         } else {
-            self.gauss.memory[at].lane(kind)
+            self.gauss.history[at].lane(kind)
         }
     }
 
@@ -228,13 +227,13 @@ impl Row {
         let Differences { lower, upper, .. } = differences;
         let along = |column: usize| {
             let (lower, upper) = (T::splat(lower[column][0]), T::splat(upper[column][0]));
-            rule.up[0] * lower + rule.up[1] * upper
+            rule.z[0] * lower + rule.z[1] * upper
         };
         let mut before = along(self.columns - 1);
         (0..self.columns)
             .map(|column| {
                 let here = along(column);
-                let shift = rule.along[0] * before + rule.along[1] * here;
+                let shift = rule.x[0] * before + rule.x[1] * here;
                 before = here;
                 shift
             })
@@ -250,13 +249,13 @@ impl Row {
         column: usize,
     ) -> [T; 4] {
         let right = if column + 1 == self.columns { 0 } else { column + 1 };
-        let Differences { lower, upper, across } = differences;
+        let Differences { lower, upper, left } = differences;
         let between = |weights: &[T; 2], from: &[f64; 2], to: &[f64; 2]| {
             [0, 1].map(|i| weights[0] * T::splat(from[i]) + weights[1] * T::splat(to[i]))
         };
         let (width, height) = (T::splat(self.width), T::splat(self.height));
-        let along = between(&rule.up, &lower[column], &upper[column]).map(|d| d / width);
-        let up = between(&rule.along, &across[column], &across[right]).map(|d| d / height);
+        let along = between(&rule.z, &lower[column], &upper[column]).map(|d| d / width);
+        let up = between(&rule.x, &left[column], &left[right]).map(|d| d / height);
         [along[0], up[0], along[1], up[1]]
     }
 
@@ -278,22 +277,21 @@ impl Row {
         {
             let mut valid = Ok(());
             relax(relaxation, line, |column, passage| {
-                let mut memory = passage.memory(relaxation.length);
+                let mut history = passage.history(relaxation.length);
                 let tensors = [&line.measures[column], &passage.after, &passage.lag];
                 let (point, stress) = (&mut points[column], &mut stresses[column]);
-                let added = law.branch(spring, point, &mut memory, tensors, stress);
+                let added = law.branch(spring, point, &mut history, tensors, stress);
                 if added.is_err() {
                     valid = added;
                 }
-                self.keep_memory(kind, [k, column], &memory);
+                self.keep_history(kind, [k, column], &history);
             });
             valid?;
         }
         Ok(stresses)
     }
 
-    /// Power in W/m that the branches turn into heat in the state that was taken over last, at its
-    /// displacements.
+    /// Power in W/m that the branches turn into heat in the last deformed state, at its displacements.
     pub fn dissipation(&self, material: &Material, differences: &Differences) -> f64 {
         let mut power = 0.0;
         for kind in 0..POINTS {

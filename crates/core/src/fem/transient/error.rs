@@ -6,19 +6,19 @@ use crate::error_kind::{ErrorKind, HasKind};
 /// Why a time step has no solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StepFailure {
-    /// An element is turned inside out, or an internal tensor is not positive.
-    #[error("an element is turned inside out")]
+    /// An element is inverted, or an internal tensor is not positive.
+    #[error("an element is inverted")]
     Inverted,
     /// The tangent is singular.
     #[error("the tangent is singular")]
     Singular,
-    /// Newton did not end.
+    /// Newton did not converge.
     #[error("the equilibrium did not converge (residual {residual:.1e} of the load)")]
     EquilibriumNotConverged {
         /// Residual over the load.
         residual: f64,
     },
-    /// Uzawa did not end.
+    /// Uzawa did not converge.
     #[error("the contact pressures did not converge")]
     ContactNotConverged,
 }
@@ -26,7 +26,7 @@ pub enum StepFailure {
 /// Why there is no transient solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TransientError {
-    /// The rubber's numbers are no rubber for large strains.
+    /// The numbers of the rubber are out of range for large strains.
     #[error(transparent)]
     Rubber(#[from] crate::rubber::RubberError),
     /// A number outside its range.

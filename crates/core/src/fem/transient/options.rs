@@ -46,7 +46,7 @@ impl Default for TransientOptions {
 }
 
 impl TransientOptions {
-    /// Checks that every number is in its range.
+    /// Checks that every number is in range.
     ///
     /// # Errors
     /// [`TransientError::OutOfRange`] for the first one that is not.

@@ -1,4 +1,4 @@
-//! The law at one integration point with the memory of one step.
+//! The law at one integration point over one step.
 
 use crate::rubber::finite_strain::{
     FiniteStrainRubber, Measure, Symmetric, Tangent, UNITS, difference,
@@ -26,31 +26,30 @@ impl Response {
     const ZERO: Self = Self { stress: [0.0; 3], moduli: [[0.0; 3]; 3] };
 
     /// The response at the strain `m` in the measure of the law if the internal tensor of branch
-    /// k is `history[k] + follows[k] m`; none where the law takes the inverse of an internal
-    /// tensor that is not positive.
+    /// k is `history[k] + fractions[k] m`; `None` if the law needs the inverse of an internal tensor that is not positive.
     pub fn at(
         rubber: &FiniteStrainRubber,
         part: Part,
         measure: &Measure,
         history: &[Symmetric],
-        follows: &[f64],
+        fractions: &[f64],
     ) -> Option<Self> {
         let mut response = Self::ZERO;
         let strain = &measure.value();
         let relaxed = [[0.0; 3]];
         let springs = std::iter::once(&rubber.equilibrium).chain(&rubber.branches);
-        let memory = relaxed.iter().zip(&[0.0]).chain(history.iter().zip(follows));
-        for (spring, (history, follows)) in springs.zip(memory) {
-            let internal = [0, 1, 2].map(|i| history[i] + follows * strain[i]);
+        let histories = relaxed.iter().zip(&[0.0]).chain(history.iter().zip(fractions));
+        for (spring, (history, fraction)) in springs.zip(histories) {
+            let internal = [0, 1, 2].map(|i| history[i] + fraction * strain[i]);
             let tensors = [strain, &internal, &difference(strain, &internal)];
             let (stress, tangent) = match part {
                 Part::Shear => (
                     rubber.shear_stress(spring, tensors),
-                    rubber.shear_tangent(spring, strain, &internal, *follows)?,
+                    rubber.shear_tangent(spring, strain, &internal, *fraction)?,
                 ),
                 Part::Volumetric => (
                     rubber.volumetric_stress(spring, tensors),
-                    rubber.volumetric_tangent(spring, strain, &internal, *follows)?,
+                    rubber.volumetric_tangent(spring, strain, &internal, *fraction)?,
                 ),
             };
             for i in 0..3 {

@@ -84,8 +84,8 @@ fn a_homogeneous_deformation_needs_only_edge_forces() {
         let elements = block.linearise(&history, &nodes).unwrap();
         let mut forces = vec![0.0; nodes.len()];
         for (index, element) in elements.iter().enumerate() {
-            for (place, force) in block.places(index).into_iter().zip(element.forces) {
-                forces[place] += force;
+            for (dof, force) in block.dofs(index).into_iter().zip(element.forces) {
+                forces[dof] += force;
             }
         }
         let row = 2 * columns;
@@ -105,10 +105,10 @@ fn stiffness_is_the_derivative_of_the_forces() {
             let elements = block.linearise(&history, &nodes).unwrap();
             let step = 1e-6 * block.mesh().spacing();
             for (index, element) in elements.iter().enumerate() {
-                for (j, place) in block.places(index).into_iter().enumerate() {
+                for (j, dof) in block.dofs(index).into_iter().enumerate() {
                     let forces = |change: f64| {
                         let mut nodes = nodes.clone();
-                        nodes[place] += change;
+                        nodes[dof] += change;
                         block.linearise(&history, &nodes).unwrap()[index].forces
                     };
                     let (after, before) = (forces(step), forces(-step));
@@ -143,12 +143,12 @@ fn contact_stiffness_is_the_derivative_of_the_forces() {
     assert!(contact.active.contains(&true) && contact.active.contains(&false));
     let mut stiffness = vec![vec![0.0; 2 * n]; 2 * n];
     for node in 0..n {
-        let places = Contact::places(n, node);
+        let dofs = Contact::dofs(n, node);
         let penalty = contact.penalty_stiffness(node);
-        for (row, i) in penalty.iter().zip(places) {
-            row.iter().zip(places).for_each(|(k, j)| stiffness[i][j] += k);
+        for (row, i) in penalty.iter().zip(dofs) {
+            row.iter().zip(dofs).for_each(|(k, j)| stiffness[i][j] += k);
         }
-        let ends = [places[2], places[4]];
+        let ends = [dofs[2], dofs[4]];
         for (row, i) in contact.curvature_stiffness(node).iter().zip(ends) {
             row.iter().zip(ends).for_each(|(k, j)| stiffness[i][j] += k);
         }

@@ -20,7 +20,7 @@ impl Law for Hencky {
 
     #[inline]
     fn measure(strain: &Symmetric) -> Option<Measure> {
-        Logarithm::of(strain).map(Measure::Logarithmic)
+        Logarithm::new(strain).map(Measure::Logarithmic)
     }
 
     fn energy(spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {

@@ -297,18 +297,18 @@ pub fn condition(
     // The cell that a window starts with, by the position it was given.
     let start = |window: &LineScan| ((window.origin - grid.origin) / grid.spacing).round() as usize;
     let ranges = kept.iter().map(|window| start(window)..start(window) + window.heights.len());
-    report.far = FarHeights::of(&grid, ranges.flatten().filter(|&cell| is_far[cell]));
+    report.far = FarHeights::new(&grid, ranges.flatten().filter(|&cell| is_far[cell]));
     Ok((kept, report))
 }
 
-/// Cuts the windows, removes their form and tells of each in the report.
+/// Cuts the windows, removes their form and reports on each.
 fn cut(
     grid: &Grid,
     conditioning: &Conditioning,
     report: &mut ConditioningReport,
 ) -> Result<Vec<LineScan>, ConditioningError> {
     let total = grid.heights.len();
-    // A window of a whole number of cells must not lose one to round-off.
+    // A window of an integer number of cells must not lose one to round-off.
     let points = conditioning.window_length_mm.map_or(total, |window_mm| {
         (window_mm / 1e3 / grid.spacing * (1.0 + 1e-9)).floor() as usize
     });

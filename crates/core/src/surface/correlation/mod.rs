@@ -116,9 +116,9 @@ impl HeightDifferenceCorrelation {
         self.sample(&log_spaced_lags(self.maximum_lag(), per_decade))
     }
 
-    /// Average over scans of equal spacing, each lag weighted by its pairs: the correlation of all
-    /// pairs pooled. It ends at the shortest of the largest lags, so that every scan stands behind
-    /// every lag and none of the steps in the average comes from a scan dropping out.
+    /// Average over scans of equal spacing, each lag weighted by its pairs: the correlation of all pairs pooled. It
+    /// ends at the shortest of the largest lags, so that every scan contributes to every lag and the average has no
+    /// steps where a scan ends.
     ///
     /// # Errors
     /// No correlations; spacings that differ by more than 1e-9 of the first.
@@ -322,8 +322,8 @@ fn smooth_length(minimum: usize) -> usize {
 
 /// Correlations of scans, in parallel, in the order of the scans.
 ///
-/// `maximum_lag` in metres; half the length of each scan without it. Each scan is transformed on
-/// its own, so the result does not depend on the number of threads or on the other scans.
+/// `maximum_lag` in metres; half the length of each scan without it. Each scan is transformed separately, so the result
+/// does not depend on the number of threads or on the other scans.
 ///
 /// # Errors
 /// The first scan that cannot be correlated, see [`CorrelationPlan::correlate`].

@@ -152,7 +152,7 @@ fn segment_points(
     if low_pass <= 2.0 * spacing {
         return Err(DepthError::LowPass { low_pass, spacing });
     }
-    // A segment of a whole number of points must not lose one to round-off.
+    // A segment of an integer number of points must not lose one to round-off.
     let points = (segment / spacing * (1.0 + 1e-9)).floor() as usize;
     if points < FEWEST_SEGMENT_POINTS {
         return Err(DepthError::FewPoints { segment, points });

@@ -333,7 +333,10 @@ fn streams_that_are_longer_shorter_or_damaged_are_no_heights() {
         digital_surf(2, 32, 60, 50, &streams, true)
     };
     assert_eq!(parse(&file(&raw, 12_000)).unwrap().heights.len(), 3000);
-    contains_all(&error(&file(&[&raw[..], &[0]].concat(), 12_000)), &["goes on behind its length"]);
+    contains_all(
+        &error(&file(&[&raw[..], &[0]].concat(), 12_000)),
+        &["continues after its length"],
+    );
     contains_all(&error(&file(&raw[1..], 12_000)), &["ends 1 bytes before its length"]);
     // The checksum of zlib is behind the data.
     let mut damaged = file(&raw, 12_000);

@@ -1,4 +1,4 @@
-//! X3P: a zip archive with `main.xml`, its checksum and, unless the heights stand in the XML
+//! X3P: a zip archive with `main.xml`, its checksum and, unless the heights are in the XML
 //! document, a binary matrix `bindata/data.bin` and a mask `bindata/valid.bin` of the points that
 //! are valid, one bit each, the lowest first.
 //!

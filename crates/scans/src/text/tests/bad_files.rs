@@ -117,10 +117,14 @@ fn positions_that_are_no_track_are_refused() {
 fn heights_that_no_road_has_are_refused() {
     let plain = simple("");
     let huge = format!("x,z\n0,-1{0}\n1,1{0}\n", "0".repeat(300));
-    assert_fails(huge, &plain, "scan: heights from -1.000e297 m to 1.000e297 m are no road");
+    assert_fails(
+        huge,
+        &plain,
+        "scan: heights from -1.000e297 m to 1.000e297 m are not those of a road",
+    );
     assert_fails(
         "x,z\n0,1\n1,-25400\n",
         &plain,
-        "scan: heights from -25.4 m to 0.001 m are no road",
+        "scan: heights from -25.4 m to 0.001 m are not those of a road",
     );
 }

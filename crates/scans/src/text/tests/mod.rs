@@ -117,7 +117,7 @@ fn the_points_end_at_the_footer_which_has_to_come() {
     let scan = parse_text("a", text.as_bytes(), &simple("stop_at = 'Ra'")).unwrap();
     assert_eq!(scan.heights, [1e-3, 2e-3]);
     let cut =
-        "scan: no line behind the points starts with `Rq` (stop_at): the file may have been cut";
+        "scan: no line after the points starts with `Rq` (stop_at): the file may have been cut";
     assert_fails("x,z\n0,1\n1,2\n", &simple("stop_at = 'Rq'"), cut);
     assert_fails(text, &simple("stop_at = 'Rq'"), "scan, line 5, column 1 (`x`): `Ra` is not");
     assert_fails(
