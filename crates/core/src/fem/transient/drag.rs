@@ -111,7 +111,7 @@ impl TransientContact {
     ///
     /// # Errors
     /// [`TransientError::Rubber`], [`TransientError::OutOfRange`] and
-    /// [`TransientError::PeriodMismatch`].
+    /// [`TransientError::PeriodMismatch`]; [`TransientError::TooLarge`].
     pub fn new(
         rubber: &Rubber,
         rheology: Rheology,
@@ -136,7 +136,7 @@ impl TransientContact {
         let block = TransientBlock::new(mesh, finite_strain);
         let stepper = Stepper {
             profile,
-            tangent: Tangent::new(&block),
+            tangent: Tangent::new(&block)?,
             flow: options.flow,
             largest_violation: options.penetration_tolerance * range,
         };

@@ -50,6 +50,12 @@ pub enum TransientError {
         /// Period of the profile in m.
         profile: f64,
     },
+    /// The matrix of the mesh does not fit into memory or its indices.
+    #[error("no memory for a matrix of {unknowns} unknowns: use fewer columns")]
+    TooLarge {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
     /// Even the smallest time step found no solution.
     #[error(
         "no step from t = {time:.5e} s (pressure {:.6} MPa, {:.6} mm dragged) even with \
@@ -78,7 +84,7 @@ impl HasKind for TransientError {
             Self::Rubber(_) | Self::OutOfRange { .. } | Self::PeriodMismatch { .. } => {
                 ErrorKind::Input
             }
-            Self::Stopped { .. } => ErrorKind::Failure,
+            Self::TooLarge { .. } | Self::Stopped { .. } => ErrorKind::Failure,
         }
     }
 }

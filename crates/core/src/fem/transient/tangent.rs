@@ -2,6 +2,7 @@
 
 use super::block::{Linearised, TransientBlock};
 use super::contact::Contact;
+use super::error::TransientError;
 use crate::fem::unknowns::Unknowns;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
@@ -20,7 +21,10 @@ pub struct Tangent {
 
 impl Tangent {
     /// The pattern of a block in contact.
-    pub fn new(block: &TransientBlock) -> Self {
+    ///
+    /// # Errors
+    /// [`TransientError::TooLarge`].
+    pub fn new(block: &TransientBlock) -> Result<Self, TransientError> {
         let mesh = block.mesh();
         let unknowns = Unknowns { columns: mesh.columns, rows: mesh.rows() };
         let mut pairs = Vec::new();
@@ -35,10 +39,11 @@ impl Tangent {
             pairs.extend(entries(&dofs).map(|(row, col, _, _)| Pair { row, col }));
         }
         let size = unknowns.free();
+        let too_large = TransientError::TooLarge { unknowns: size };
         let (symbolic, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
-            .expect("indices lie in the matrix");
-        let symbolic_lu = SymbolicLu::try_new(symbolic.as_ref()).expect("memory for the pattern");
-        Self { unknowns, symbolic, argsort, symbolic_lu }
+            .map_err(|_| too_large.clone())?;
+        let symbolic_lu = SymbolicLu::try_new(symbolic.as_ref()).map_err(|_| too_large)?;
+        Ok(Self { unknowns, symbolic, argsort, symbolic_lu })
     }
 
     /// Solves for the change of all displacements; `None` for a singular matrix.
