@@ -3,7 +3,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`scan`] | line scans, as read and on equal spacing |
-//! | [`condition`] | faults, resampling, windows and form of a scan, in one call |
+//! | [`mod@condition`] | faults, resampling, windows and form of a scan, in one call |
 //! | [`faults`], [`resample`], [`window`], [`form`] | the steps of that |
 //! | [`parameters`], [`profile`], [`texture`] | roughness parameters, those of ISO 21920, road texture by ISO 13473 |
 //! | [`filter`] | Gaussian profile filter |

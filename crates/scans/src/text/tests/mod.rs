@@ -206,7 +206,7 @@ fn what_is_no_text_is_told_by_its_line() {
     assert_fails(long, &plain, "scan, line 3: a line of more than 4194304 bytes");
     let many = format!("x,z\n0,1\n1,{}\n", ",".repeat(70_000));
     assert_fails(many, &plain, "scan, line 3: more than 65536 cells; check `separator`");
-    assert_fails(b"x,z\n0,1\n1,\xff\n2,3\n", &plain, "scan, line 3: bytes that are no UTF-8");
+    assert_fails(b"x,z\n0,1\n1,\xff\n2,3\n", &plain, "scan, line 3: bytes that are not UTF-8");
     let shift_jis = simple("encoding = 'shift_jis'");
     assert_fails(
         b"x,z\n0,1\n1,\x81\n2,3\n",
@@ -282,7 +282,7 @@ fn words_among_blanks_do_not_shift_named_columns() {
 
 #[test]
 fn bytes_that_are_no_text_are_refused() {
-    assert_fails(b"x,z\n0,1\n1,\xFF\n", &simple(""), "scan, line 3: bytes that are no UTF-8");
+    assert_fails(b"x,z\n0,1\n1,\xFF\n", &simple(""), "scan, line 3: bytes that are not UTF-8");
     assert_fails(b"x,z\n0,\x00\n", &simple(""), "scan: holds binary data");
     assert_fails(b"\x89PNG\r\n\x1a\n\x00\x00", &simple(""), "scan: holds binary data");
     assert_fails(b"x,z\n0,1\n1", &simple("encoding = 'utf-16le'"), "scan");
