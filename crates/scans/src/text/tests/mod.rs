@@ -211,7 +211,7 @@ fn what_is_no_text_is_told_by_its_line() {
     assert_fails(
         b"x,z\n0,1\n1,\x81\n2,3\n",
         &shift_jis,
-        "scan, line 3: bytes that are no Shift_JIS",
+        "scan, line 3: bytes that are not Shift_JIS",
     );
     // A mark of the encoding beyond what is looked at first, and a letter on the seam of two reads.
     let points: String = (0..100_000).map(|i| format!("{i},2\n")).collect();
