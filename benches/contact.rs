@@ -1,8 +1,8 @@
 //! Contacts of one to eight waves on 2^10 to 2^20 points, contact area 5 %.
 
 use asperity::contact::SlidingContact;
-use asperity::rubber::{MaxwellBranch, Rubber};
-use asperity::surface::{Wave, wave};
+use asperity::rubber::Rubber;
+use asperity::surface::{TABLE_3_1_MM, Wave, wave};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -10,41 +10,9 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::time::Duration;
 
-/// Wavelengths and amplitudes in mm of thesis Table 3.1.
-const WAVES_MM: [(f64, f64); 8] = [
-    (0.0625, 0.01867),
-    (0.125, 0.02648),
-    (0.25, 0.02939),
-    (0.5, 0.06626),
-    (1.0, 0.06177),
-    (2.0, 0.21635),
-    (4.0, 0.14772),
-    (8.0, 0.48995),
-];
-
-/// Moduli in MPa and relaxation times in s of thesis Table 2.1.
-const BRANCHES: [(f64, f64); 6] = [
-    (1.72, 1.134e-2),
-    (7.36, 2.628e-4),
-    (70.98, 1.316e-5),
-    (505.87, 1.295e-6),
-    (1125.85, 7.708e-8),
-    (1185.94, 4.200e-10),
-];
-
 fn contact(waves: usize, points: usize) -> SlidingContact {
-    let branch = |(modulus_mpa, relaxation_time): (f64, f64)| MaxwellBranch {
-        modulus: 1e6 * modulus_mpa,
-        relaxation_time,
-    };
-    let rubber = Rubber {
-        name: "Table 2.1".into(),
-        equilibrium_modulus: 4.17e6,
-        branches: BRANCHES.into_iter().map(branch).collect(),
-        poisson_ratio: 0.49,
-    };
     let mut generator = Pcg64::seed_from_u64(1);
-    let sines: Vec<Wave> = WAVES_MM[..waves]
+    let sines: Vec<Wave> = TABLE_3_1_MM[..waves]
         .iter()
         .map(|(wavelength, amplitude)| Wave {
             wavelength: 1e-3 * wavelength,
@@ -52,9 +20,9 @@ fn contact(waves: usize, points: usize) -> SlidingContact {
             phase: TAU * generator.random::<f64>(),
         })
         .collect();
-    let period = 1e-3 * WAVES_MM[waves - 1].0;
+    let period = 1e-3 * TABLE_3_1_MM[waves - 1].0;
     let heights = wave::sample(&sines, period, points);
-    SlidingContact::new(&rubber, 0.01, period, &heights).expect("the profile is sound")
+    SlidingContact::new(&Rubber::table_2_1(), 0.01, period, &heights).expect("the profile is sound")
 }
 
 fn solve(criterion: &mut Criterion) {

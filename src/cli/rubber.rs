@@ -285,7 +285,8 @@ impl Fit {
     /// The error with the file, and with what looks wrong in it, which may be the reason.
     fn refusal(&self, error: FitError, doubts: &[String]) -> CliError {
         let doubts: String = doubts.iter().map(|doubt| format!("\n{doubt}")).collect();
-        let text = format!("{}: {error}{doubts}", self.sweep.display());
+        let options = options_of(&error);
+        let text = format!("{}: {error}{options}{doubts}", self.sweep.display());
         match error {
             FitError::NoFit { .. } => CliError::failure(text),
             FitError::Reference { measured_c, .. } if measured_c.is_empty() => {
@@ -301,6 +302,19 @@ impl Fit {
     fn name(&self) -> String {
         let of_file = || self.to.file_stem().map(asperity::files::name::text);
         self.name.clone().or_else(of_file).unwrap_or_else(|| "rubber".into())
+    }
+}
+
+/// The options and columns that an error of a fit leads to: the fit itself knows none.
+fn options_of(error: &FitError) -> &'static str {
+    match error {
+        FitError::NoOverlap { .. } => " (--shift-factors)",
+        FitError::NoReference => " (--reference-temperature-c)",
+        FitError::Duplicate { .. } => " (column temperature_c)",
+        FitError::VerticalWithoutTemperature => {
+            ": add the column temperature_c, or leave out --vertical-shift"
+        }
+        _ => "",
     }
 }
 

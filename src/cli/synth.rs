@@ -140,7 +140,7 @@ const LENGTHS: [(&str, &str, &str, f64); 8] = [
 /// The error under the name of the option, with the value in its unit.
 fn impossible(error: SynthesisError) -> CliError {
     let SynthesisError::OutOfRange { parameter, value, allowed } = &error else {
-        return CliError::of(error.kind(), format!("{error} (keys of a recipe, lengths in m)"));
+        return CliError::of(error.kind(), error.to_string());
     };
     if let Some((_, option, unit, metres)) = LENGTHS.iter().find(|known| known.0 == *parameter) {
         let mut typed = significant(value / metres);

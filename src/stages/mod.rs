@@ -22,6 +22,7 @@ mod friction;
 pub mod hybrid;
 pub mod ingest;
 pub(crate) mod kept;
+mod keys;
 pub mod micro;
 pub mod multilevel;
 pub mod realise;
@@ -108,7 +109,7 @@ pub enum StageError {
         path: PathBuf,
     },
     /// A scan that cannot be conditioned.
-    #[error(transparent)]
+    #[error("{}{}", .0, keys::of_conditioning(.0))]
     Conditioning(#[from] crate::surface::ConditioningError),
     /// The picture of the faults of a scan cannot be drawn.
     #[error("ingest.fault_pictures: {0}")]
@@ -219,7 +220,7 @@ pub enum StageError {
         source: crate::rubber::RubberError,
     },
     /// A contact.
-    #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}")]
+    #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}{}", keys::of_curve(.source))]
     Contact {
         /// Number of waves.
         waves: u32,

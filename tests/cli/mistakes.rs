@@ -198,7 +198,7 @@ fn mistakes_in_a_recipe_are_answered_with_line_and_value_once() {
         ("seed = 1", "", &["realise.seed is missing: give a whole number"]),
         ("seed = 1", "seed = -1", &["line 27", "-1 is not a whole number of 0 or more"]),
         ("seed = 1", "seed = 99999999999999999999", &["99999999999999999999", "whole number"]),
-        ("seed = 1", "seed = 1\nseed = 2", &["line 28", "`seed` stands twice"]),
+        ("seed = 1", "seed = 1\nseed = 2", &["line 28", "`seed` occurs twice"]),
         (
             "realisations = 2",
             "realisations = 0",

@@ -172,7 +172,7 @@ fn bad_sweeps_are_explained() {
         ("frequency_hz,storage_mpa\n1,2\n", "no column of the loss modulus"),
         (
             "strain,frequency_hz,storage_mpa,loss_mpa\n1,1,2,1\n2,1,2,1\n",
-            "line 3: the frequency 1 stands here for the second time: this looks like a strain sweep",
+            "line 3: the frequency 1 is given here for the second time: this looks like a strain sweep",
         ),
         ("frequency_hz,storage_mpa,loss_mpa,temperature_c\n1,2,1,-300\n", "absolute zero"),
         ("frequency_hz,storage_mpa,loss_mpa,loss_pa\n1,2,1,1\n", "2 columns of the loss modulus"),

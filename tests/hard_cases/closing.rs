@@ -114,7 +114,8 @@ fn depth_of_full_contact(rubber: &Rubber, speed: f64, profile: &Profile) -> f64 
         speed,
         profile.period,
         n,
-    );
+    )
+    .unwrap();
     let (mut unit, mut displacement) = (vec![0.0; n], vec![0.0; n]);
     unit[0] = 1.0;
     space.displacement(&unit, &mut displacement);

@@ -13,7 +13,8 @@ use realfft::RealFftPlanner;
 /// Displacement of the loaded point by a unit pressure there: a sum over the waves.
 fn own_displacement(rubber: &Rubber, speed: f64, profile: &Profile) -> f64 {
     let n = profile.heights.len();
-    let mut space = HalfSpace::new(&mut RealFftPlanner::new(), rubber, speed, profile.period, n);
+    let mut space =
+        HalfSpace::new(&mut RealFftPlanner::new(), rubber, speed, profile.period, n).unwrap();
     let (mut unit, mut displacement) = (vec![0.0; n], vec![0.0; n]);
     unit[0] = 1.0;
     space.displacement(&unit, &mut displacement);

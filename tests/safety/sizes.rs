@@ -52,10 +52,10 @@ fn ten_gigabytes_are_refused_at_once_in_little_memory() {
     // The beginning tells what is wrong: holes are no text and no header, and an X3P file is not read as a stream.
     for (name, head, problem) in [
         ("scan.txt", &b"x_mm;z_um\n0.000;1.0\n"[..], "binary data"),
-        ("scan.sdf", b"aISO-1.0  ", "goes on for more than 4194304 bytes without a line end"),
+        ("scan.sdf", b"aISO-1.0  ", "is longer than 4194304 bytes without a line end"),
         ("scan.x3p", b"PK\x03\x04", "save it as SDF"),
         ("scan.pro", b"DIGITAL SURF", "an object of type 0"),
-        ("scan.erd", b"ERDFILEV2.00\n", "goes on for more than 4194304 bytes without a line end"),
+        ("scan.erd", b"ERDFILEV2.00\n", "is longer than 4194304 bytes without a line end"),
     ] {
         let mut file = File::create(campaign.path(name)).unwrap();
         file.write_all(head).unwrap();

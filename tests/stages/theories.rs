@@ -71,7 +71,7 @@ fn a_theory_is_taken_at_the_pressure_of_its_own_area() {
         amplitude: w.amplitude,
     };
     let scales: Vec<SineScale> = surface.profile.iter().map(scale).collect();
-    let theory = Persson::new(&scales, &rubber, 0.01, 0.75);
+    let theory = Persson::new(&scales, &rubber, 0.01, 0.75).unwrap();
     let rows = view.rows(THEORIES).unwrap();
     let half_space = view.rows(CURVES).unwrap();
     assert_eq!(rows.len(), 2 * half_space.len());

@@ -14,7 +14,8 @@ fn the_work_on_the_slope_of_the_displacement_is_the_power_of_the_pressure() {
         let mut contact =
             SlidingContact::new(&rubber, speed, profile.period, &profile.heights).unwrap();
         let mut planner = RealFftPlanner::new();
-        let mut space = HalfSpace::new(&mut planner, &rubber, speed, profile.period, points);
+        let mut space =
+            HalfSpace::new(&mut planner, &rubber, speed, profile.period, points).unwrap();
         for p in [1e5, 1e6] {
             let solution = contact.solve(p).unwrap();
             let mean = profile.heights.iter().sum::<f64>() / points as f64;

@@ -1,4 +1,9 @@
-//! Files that a user gives: read whole, if they are plain files of a size that makes sense.
+//! Files that a user gives: read completely, if they are plain files of a reasonable size.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`name`] | names and paths as text without loss |
+//! | `toml_error` | mistakes in TOML with line and nearest key |
 
 pub mod name;
 mod toml_error;
@@ -67,7 +72,7 @@ pub fn read_settings(path: &Path) -> io::Result<String> {
     })
 }
 
-/// What to do where the operating system says only what is wrong.
+/// What to do, where the operating system states only what is wrong.
 pub fn advice(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::NotFound => "; check the path",

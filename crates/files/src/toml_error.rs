@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// Names less alike than this are no misspellings of each other (Jaro and Winkler, 1 being equal).
+/// Names less alike than this are not misspellings of each other (Jaro and Winkler, 1 being equal).
 const ALIKE: f64 = 0.8;
 /// Longer lines are shown up to here.
 const LONGEST_LINE: usize = 100;
@@ -11,7 +11,7 @@ const LONGEST_LINE: usize = 100;
 /// A mistake in a TOML file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlError {
-    /// Line and column from 1; none where something is missing from the file as a whole.
+    /// Line and column from 1; `None` if something is missing from the file.
     place: Option<(usize, usize)>,
     /// The line as it was typed.
     line: String,
@@ -84,7 +84,7 @@ fn in_words(message: &str, typed: &str, line: &str) -> String {
         return format!("{typed} is not known here: give {wanted}");
     }
     if message.starts_with("duplicate key") {
-        return format!("`{typed}` stands twice in this section: delete one of the two");
+        return format!("`{typed}` occurs twice in this section: delete one of the two");
     }
     if message.contains("overflow") {
         return format!("{typed} is too large for a number");
@@ -137,7 +137,7 @@ fn wanted(expected: &str) -> Option<&'static str> {
     })
 }
 
-/// What to write in place of the value.
+/// What to write instead of the value.
 fn advice(expected: &str, typed: &str) -> String {
     let inner = typed.trim_matches(['"', '\'']);
     match expected {
@@ -203,7 +203,7 @@ mod tests {
                 ": unknown key `tolerence`; did you mean `tolerance`?\n  tolerence = 1",
             ),
             ("xyz = 1", ": unknown key `xyz`; known here are tolerance, speeds, count, rubber"),
-            ("tolerance = 1\ntolerance = 2", ", line 2, column 1: `tolerance` stands twice"),
+            ("tolerance = 1\ntolerance = 2", ", line 2, column 1: `tolerance` occurs twice"),
             ("tolerance = 1\nspeeds = 10", ", line 2, column 10: 10 is not a list: write [10]"),
             (
                 "tolerance = 1\nspeeds = ['10 mm/s']",

@@ -129,7 +129,7 @@ impl<R: Read> Utf8<R> {
             if self.undecoded.is_empty() {
                 self.undecoded = 0..self.reader.read(&mut self.raw)?;
             }
-            // The last call of all is told that there is no more.
+            // The last call signals the end of the input.
             let last = self.undecoded.is_empty();
             self.text.resize(1 << 16, 0);
             let source = &self.raw[self.undecoded.clone()];

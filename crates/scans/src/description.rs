@@ -202,7 +202,7 @@ impl TextFormat {
             None => Ok(()),
             Some((key, length)) => {
                 let reason =
-                    format!("is {length} mm, and is for line scans; leave it out beside y_column");
+                    format!("is {length} mm, and is for line scans; leave it out with y_column");
                 Err(description(key, reason))
             }
         }
@@ -213,7 +213,7 @@ impl TextFormat {
             (Some(_), Some(_)) => {
                 return Err(description(
                     "x_spacing_um",
-                    "stands beside x_column; keep one of them",
+                    "is given with x_column; keep one of them",
                 ));
             }
             (None, None) => {

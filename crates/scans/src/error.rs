@@ -26,7 +26,7 @@ impl HasKind for ScanError {
 }
 
 impl ScanError {
-    /// The same error, told of the file at `path`.
+    /// The same error for the file at `path`.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         Self { file: path.display().to_string(), ..self }
     }
@@ -52,14 +52,14 @@ pub enum ScanProblem {
     Empty,
     #[error("holds binary data, not text; check the file type, or set `encoding` (utf-16le, ...)")]
     Binary,
-    #[error("bytes that are no {encoding}; set `encoding`, for instance to windows-1252")]
+    #[error("bytes that are not {encoding}; set `encoding`, for instance to windows-1252")]
     Encoding { encoding: &'static str },
     #[error("has {lines} lines, fewer than skip_lines = {skip_lines}")]
     SkippedAll { lines: usize, skip_lines: usize },
     #[error("no line starts with the marker `{marker}` (skip_until)")]
     NoMarker { marker: String },
     #[error(
-        "no line behind the points starts with `{marker}` (stop_at): the file may have been cut; if it is whole, leave stop_at out"
+        "no line after the points starts with `{marker}` (stop_at): the file may have been cut; if it is complete, leave stop_at out"
     )]
     NoFooter { marker: String },
     #[error("there is no column `{wanted}`; the columns are {present}; check `separator` as well")]
@@ -69,7 +69,7 @@ pub enum ScanProblem {
     #[error("holds numbers where the column names should be; set `header = false`")]
     HeaderIsData,
     #[error(
-        "a line of more than {limit} bytes is no line of points; check the file type, or export the file again"
+        "a line of more than {limit} bytes is not a line of points; check the file type, or export the file again"
     )]
     LongLine { limit: usize },
     #[error("more than {limit} points; cut the file into parts, each of which is a scan")]
@@ -88,7 +88,7 @@ pub enum ScanProblem {
     #[error("the file breaks off in the middle of its last line; copy it again")]
     Truncated,
     #[error(
-        "the file ends here without a line end, within or behind `{text}`, which has fewer digits than all numbers \
+        "the file ends here without a line end, within or after `{text}`, which has fewer digits than all numbers \
          before it: it is most likely cut off; copy it again, or end the line if it is complete"
     )]
     CutNumber { text: String },
@@ -122,7 +122,7 @@ pub enum ScanProblem {
         "nothing is left: the track is {length_mm} mm long, cut_start_mm + cut_end_mm is {cut_mm} mm"
     )]
     AllCut { length_mm: f64, cut_mm: f64 },
-    #[error("points {} mm apart are no scan of texture (1e-6 to 10 mm); check `{key}`", brief(*spacing_mm))]
+    #[error("points {} mm apart are not a scan of texture (1e-6 to 10 mm); check `{key}`", brief(*spacing_mm))]
     AbsurdSpacing { spacing_mm: f64, key: &'static str },
     #[error(
         "half of all neighbouring points are steeper than {} to 1 (the track would be {} mm long): a unit is wrong; \
@@ -143,7 +143,7 @@ pub enum ScanProblem {
     #[error("there is no sheet `{wanted}` (key `sheet`); the sheets are {present}")]
     NoSheet { wanted: String, present: String },
     #[error(
-        "heights from {} m to {} m are no road; check `z_unit`, or list a marker of missing points in `missing`",
+        "heights from {} m to {} m are not those of a road; check `z_unit`, or list a marker of missing points in `missing`",
         brief(*lowest_m), brief(*highest_m)
     )]
     AbsurdHeights { lowest_m: f64, highest_m: f64 },

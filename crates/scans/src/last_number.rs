@@ -1,13 +1,13 @@
 //! Numbers that a file was cut in.
 
-/// Fewer numbers than these do not tell how a file writes them.
+/// Number of values needed to know how a file writes them.
 pub(super) const ENOUGH: usize = 8;
 
-/// How short the numbers of a file are written, to tell a last one that was cut.
+/// The shortest numbers of a file, to detect a last one that was cut.
 ///
 /// A file that was copied in part may end within a number, and what is left of `-12.345` is a
 /// number as well: `-12.3`. Instruments write all numbers of a column with the same decimals, so
-/// that a last number shorter than all before it, with no line end behind it, was cut.
+/// that a last number shorter than all before it, without a line end, was cut.
 #[derive(Debug, Default)]
 pub(super) struct LastNumber {
     seen: usize,
@@ -79,7 +79,7 @@ mod tests {
             (&["12,345", "-1,200"], "13,45", true),
             (&["1.5e-05", "-1.5e-05"], "-1.5e-0", true),
             (&["1.5e-05", "1.5e-04"], "-1.5e-05", false),
-            // Without trailing zeros a shorter number may be whole.
+            // Without trailing zeros a shorter number may be complete.
             (&["1.25", "3", "1.5"], "2", false),
             (&["100", "123"], "12", true),
             (&["1", "123"], "12", false),

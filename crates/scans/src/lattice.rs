@@ -1,4 +1,4 @@
-//! Points of a height map that are listed one by one: the grid that they stand on.
+//! The grid of a height map whose points are listed one by one.
 
 /// A grid along two axes, and the place of each point on it.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ impl Lattice {
     /// out, directions may alternate.
     ///
     /// # Errors
-    /// Why there is none, in words.
+    /// Why there is no grid, in words.
     pub(super) fn of(x: &[f64], y: &[f64]) -> Result<Self, String> {
         let fewest = FEWEST_LINES * FEWEST_POINTS;
         if x.len() < fewest {

@@ -1,9 +1,22 @@
 //! Instrument files: bytes in, a [`RawScan`](asperity_core::surface::RawScan) or an error out.
 //!
-//! Nothing is guessed. Files that state their units are told by their content and read natively
-//! ([`mod@file`]); of text files, units, columns and markers of missing points come from a description
-//! in the recipe (a sheet of a workbook is text to it: [`spreadsheet`]), and what does not fit it is an error that names the line and the key to change.
-//! [`text_shape`] looks at a text and proposes such a description.
+//! Nothing is guessed. Files that state their units are recognised by their content and read natively ([`mod@file`]);
+//! of text files, units, columns and markers of missing points come from a description in the recipe (a sheet of a
+//! workbook is text to it: [`spreadsheet`]), and what does not fit it is an error that names the line and the key to
+//! change. [`text_shape`] looks at a text and proposes such a description.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `source`, `packed` | a file as a stream of known length; how far compressed data may unpack |
+//! | [`mod@file`] | files of instruments |
+//! | [`description`] | the description of a text file |
+//! | `text`, [`spreadsheet`] | text files and sheets of workbooks, read as a description says |
+//! | `decode`, `lines`, `last_number`, `thousands` | lines and words of a text; numbers that were cut off; separated thousands |
+//! | `lattice` | the grid of a height map whose points are listed one by one |
+//! | [`text_shape`] | what a text looks like, and the description that would read it |
+//! | [`sweeps`] | measured moduli and shift factors |
+//! | [`error`] | what can be wrong with a scan file |
+//! | `cases` | tests on files from laboratories |
 
 #[cfg(test)]
 mod cases;
@@ -103,7 +116,7 @@ pub fn admit_source(source: Source<'_>) -> io::Result<()> {
     }
 }
 
-/// Whether bytes are no text: zeros are in no encoding but UTF-16, where every second is one.
+/// Whether bytes are not text: only UTF-16 has zeros, in every second byte.
 fn is_binary(start: &[u8]) -> bool {
     start.windows(4).any(|four| four == [0; 4])
 }

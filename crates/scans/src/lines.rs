@@ -144,7 +144,7 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// The byte behind the first unread one, which stays unread; none at the end of the file.
+    /// The byte after the first unread one, which stays unread; `None` at the end of the file.
     fn byte_after(&mut self) -> Result<Option<u8>, LineError> {
         if self.at + 1 == self.chunk.len() {
             self.chunk.drain(..self.at);

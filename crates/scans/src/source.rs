@@ -33,7 +33,7 @@ impl<'a> Source<'a> {
     /// The file at `path`.
     ///
     /// # Errors
-    /// Those of the operating system; what is no plain file is refused, before it is opened, since
+    /// Those of the operating system; anything but a plain file is refused, before it is opened, since
     /// a pipe would wait for its writer.
     pub fn open(path: &Path) -> io::Result<Source<'static>> {
         asperity_files::admit(path, u64::MAX)?;

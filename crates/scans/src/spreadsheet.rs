@@ -1,8 +1,8 @@
 //! Workbooks (.xlsx, .xlsm): a sheet as text, which a description goes with as with any other.
 //!
-//! Each row of the sheet is a line and tabulators stand between the cells, so that the numbers of
+//! Each row of the sheet is a line and tabulators separate the cells, so that the numbers of
 //! lines and columns in messages are those of the sheet. Numbers have all their digits; what a
-//! program turned into a date is no number. Before the reader of workbooks sees the file, its
+//! program turned into a date is not a number. Before the reader of workbooks sees the file, its
 //! members are unpacked piece by piece to see that they stay within limits.
 
 use crate::description::{Column, DecimalMark};
@@ -98,7 +98,7 @@ fn unreadable(error: &XlsxError) -> ScanProblem {
     workbook_problem(format!("the workbook cannot be read ({error})"))
 }
 
-/// The cells of a sheet, one after the other as they stand in the file.
+/// The cells of a sheet, in the order of the file.
 fn cells(
     workbook: &mut Xlsx<Cursor<&[u8]>>,
     name: &str,
@@ -116,7 +116,7 @@ fn cells(
         }
         if cell_row < row || (cell_row == row && cell_column < column) {
             return Err(workbook_problem(format!(
-                "row {} of the sheet `{name}` stands twice",
+                "row {} of the sheet `{name}` occurs twice",
                 cell_row + 1
             )));
         }
@@ -144,7 +144,7 @@ fn cells(
         .ok_or_else(|| workbook_problem(format!("the sheet `{name}` is much larger than the file")))
 }
 
-/// The text with as many cells on every line that has some, since empty ones are no cells of the
+/// The text with as many cells on every line that has some, since empty ones are not cells of the
 /// file; `None` if that is too much.
 fn padded(text: String, limit: u64) -> Option<String> {
     let marks = |line: &str| line.bytes().filter(|byte| *byte == b'\t').count();
@@ -191,7 +191,7 @@ fn push(text: &mut String, value: &DataRef, mark: DecimalMark) {
     }
 }
 
-/// A text on one line and without what stands between cells or around them.
+/// A text on one line without separators and quotation marks.
 fn push_word(text: &mut String, word: &str) -> std::fmt::Result {
     text.extend(word.trim().chars().map(|c| match c {
         '"' => '\'',

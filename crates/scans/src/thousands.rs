@@ -3,7 +3,7 @@
 use crate::description::DecimalMark;
 
 /// The mark between the thousands of a number such as `12,345.67`, `1'234` or, with a decimal
-/// comma, `12.345`: groups of three digits behind a first of one to three that is no lone zero.
+/// comma, `12.345`: groups of three digits after a first one of one to three that is not a single zero.
 pub(crate) fn thousands_mark(cell: &str, mark: DecimalMark) -> Option<char> {
     const MARKS: [char; 6] = [',', '.', '\'', ' ', '\u{a0}', '\u{202f}'];
     let decimal = match mark {

@@ -14,7 +14,7 @@ pub use standards::{DEPTH, DepthRow, PROFILE, ProfileDepth, ProfileRow, TEXTURE,
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::ingest::read_windows;
-use super::{Stage, StageError};
+use super::{Stage, StageError, keys};
 use crate::artifact::{Metadata, RunView};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::LineScan;
@@ -338,7 +338,10 @@ fn self_affine(
     for (name, fit) in names.iter().zip(fits) {
         match fit {
             Ok(fit) => rows.push(self_affine_row(name, &fit)),
-            Err(error) => failed.push(((*name).to_owned(), error.to_string())),
+            Err(error) => {
+                let reason = format!("{error}{}", keys::of_self_affine(&error));
+                failed.push(((*name).to_owned(), reason));
+            }
         }
     }
     let told = warnings::left_out("windows", names.len(), "self-affine fit", &failed);
@@ -354,7 +357,10 @@ fn self_affine(
                 );
             }
         }
-        Err(error) => warnings.push(format!("no self-affine fit of the average: {error}")),
+        Err(error) => {
+            let keys = keys::of_self_affine(&error);
+            warnings.push(format!("no self-affine fit of the average: {error}{keys}"));
+        }
     }
     (rows, warnings)
 }

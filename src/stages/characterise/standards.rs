@@ -4,6 +4,7 @@ use super::warnings::left_out;
 use super::{AVERAGE, Characterise, require_ascending};
 use crate::artifact::{Row, Table};
 use crate::requirement::{InvalidRecipe, require};
+use crate::stages::keys;
 use crate::surface::filter::{ProfileFilter, waviness};
 use crate::surface::profile::{ProfileParameters, profile_parameters};
 use crate::surface::texture::{DepthError, DepthOptions, mean_profile_depths, texture_bands};
@@ -347,7 +348,7 @@ pub(super) fn depth_rows(
     let found: Vec<Result<Vec<DepthRow>, DepthError>> = windows.par_iter().map(rows).collect();
     let reasons = windows.iter().zip(&found).filter_map(|(window, found)| {
         let error = found.as_ref().err()?;
-        Some((window.name.clone(), error.to_string()))
+        Some((window.name.clone(), format!("{error}{}", keys::of_depth(error))))
     });
     // Scans of a few centimetres are not made for the mean profile depth: of windows shorter than half
     // a segment nothing is said unless the recipe has a key of it.

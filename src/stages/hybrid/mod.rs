@@ -284,7 +284,7 @@ fn corrected(
     local: &[f64],
     residual: f64,
 ) -> HybridRow {
-    let points = local.iter().filter(|p| **p >= microscale.smallest_pressure()).count();
+    let points = local.iter().filter(|p| microscale.is_contact_point(**p)).count();
     // A pressure beyond the samples is the only error, and what the missing value says.
     let correction = microscale.correction(local).ok().flatten();
     let (rule, of_all_waves) = (parameters.correction, curve.friction_coefficient);

@@ -111,7 +111,7 @@ impl<'a> MicroCurve<'a> {
         let heights = self.half_space.heights();
         let touch_separation_m = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
             - heights.iter().sum::<f64>() / heights.len() as f64;
-        let full = self.half_space.contact()?.full_contact_limit();
+        let full = self.half_space.contact()?.smallest_full_contact_pressure();
         let (Owner { waves, realisation }, speed_mm_s) =
             (self.task.owners[0], self.task.speed_mm_s);
         let mut rows = Vec::with_capacity(LAW_SAMPLES);

@@ -2,8 +2,9 @@
 
 use super::Model;
 use crate::artifact::{Row, RunView, Table};
+use crate::contact::ContactError;
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::{Rubber, RubberError};
 use crate::stages::StageError;
 use crate::stages::bem::CurveRow;
 use crate::stages::realise::{Surface, read_surfaces};
@@ -128,8 +129,9 @@ pub(super) fn predictions(
             let first = &curve[0];
             let of_curve = |surface: &&Surface| surface.at(first.speed_mm_s) == first.curve();
             let Some(surface) = surfaces.iter().find(of_curve) else { continue };
-            let predict =
-                prediction(theory, constants, rubber, surface, first.speed_mm_s.mm_to_m());
+            let speed = first.speed_mm_s.mm_to_m();
+            let predict = prediction(theory, constants, rubber, surface, speed)
+                .map_err(|source| no_modulus(theory, source))?;
             rows.extend(curve.iter().map(|row| {
                 let (pressure, friction_coefficient) = predict(row.contact_area_fraction);
                 TheoryRow {
@@ -148,19 +150,25 @@ pub(super) fn predictions(
 }
 
 /// Mean pressure in Pa and friction coefficient over the contact area fraction.
+type Prediction = Box<dyn Fn(f64) -> (f64, f64)>;
+
+/// What a theory predicts on a surface.
+///
+/// # Errors
+/// If the rubber has no modulus at the frequency of a wave.
 fn prediction(
     theory: Theory,
     constants: &TheoryConstants,
     rubber: &Rubber,
     surface: &Surface,
     speed: f64,
-) -> Box<dyn Fn(f64) -> (f64, f64)> {
+) -> Result<Prediction, RubberError> {
     let scale =
         |w: &crate::surface::Wave| SineScale { wavelength: w.wavelength, amplitude: w.amplitude };
     let scales: Vec<SineScale> = surface.profile.iter().map(scale).collect();
-    match theory {
+    Ok(match theory {
         Theory::Persson => {
-            let theory = Persson::new(&scales, rubber, speed, constants.persson_gamma);
+            let theory = Persson::new(&scales, rubber, speed, constants.persson_gamma)?;
             Box::new(move |area| {
                 let pressure = theory.mean_pressure(area);
                 (pressure, theory.friction_coefficient(pressure))
@@ -168,10 +176,16 @@ fn prediction(
         }
         Theory::KlueppelHeinrich => {
             let (heights, ratio) = (heights(surface), constants.klueppel_heinrich_layer_ratio);
-            let theory = KlueppelHeinrich::new(&scales, &heights, rubber, speed, ratio);
+            let theory = KlueppelHeinrich::new(&scales, &heights, rubber, speed, ratio)?;
             Box::new(move |area| (theory.mean_pressure(area), theory.friction_coefficient()))
         }
-    }
+    })
+}
+
+/// The error of a rubber without a modulus at a frequency that a theory asks for.
+fn no_modulus(theory: Theory, source: RubberError) -> StageError {
+    let source = Box::new(ContactError::Rubber(source).into());
+    StageError::Solve { problem: theory.model().to_string(), source }
 }
 
 /// Samples on the shortest wave, for the distribution of heights.

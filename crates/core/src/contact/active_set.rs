@@ -3,7 +3,7 @@
 //! Semismooth Newton for the complementarity problem: solve the linear system for the pressures
 //! on the present contact set, then drop points under tension and add points that penetrate.
 //! The linear systems are solved by GMRES, preconditioned from the left, so that its tolerance
-//! is one of pressure: near a contact edge it is the sign of a small pressure that decides.
+//! is one of pressure: near a contact edge the sign of a small pressure decides.
 
 use super::direct::{self, Dense};
 use super::half_space::HalfSpace;
@@ -12,12 +12,12 @@ use super::solution::displacement_scale;
 use crate::numerics::Interrupt;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
-/// How accurate a grid has to be.
+/// How accurately a grid is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Goal {
-    /// A start for the next finer grid: few points still change.
+    /// As a start for the next finer grid: until few points still change.
     Start,
-    /// The answer: no point changes and the residual is below the tolerance.
+    /// As the solution: until no point changes and the residual is below the tolerance.
     Solution {
         /// Tolerance of the residual.
         tolerance: f64,
@@ -50,30 +50,30 @@ pub(super) struct Outcome {
     pub changes: usize,
 }
 
-/// Krylov tolerance once the active set is unchanged, or where looser ones have let it wander. While it
-/// moves the tolerance is one over the number of points: the pressure next to a
-/// contact edge, whose sign decides, falls with a power of the spacing between a half and one.
+/// Krylov tolerance once the active set is unchanged, or if it has not settled under looser ones. While the set changes
+/// the tolerance is one over the number of points: the pressure next to a contact edge, whose sign decides, falls with
+/// a power of the spacing between a half and one.
 const TIGHT: f64 = 1e-8;
-/// Share of it once the first iterations have not settled the set: where loss makes the edge condition of one
-/// side weak, wrong signs then lead it astray.
+/// Factor of that looser tolerance if the set has not settled in the first iterations: where loss makes the edge
+/// condition of one side weak, wrong signs keep the set changing.
 const LOOSE_LATER: f64 = 1e-2;
 /// Active-set iterations with loose, then with tight linear solves.
 const LOOSE_ITERATIONS: usize = 25;
 const MOST_ITERATIONS: usize = 600;
-/// Tight solves on a set that rests which leave the residual where it was: what is left of it is
-/// round-off, and whether that is little enough is for the caller to judge.
+/// Tight solves on an unchanged set without a lower residual, after which the rest counts as round-off. The caller
+/// checks whether it is small enough.
 const STALLED_ITERATIONS: usize = 3;
-/// Iteration after which the set grows afresh from the highest point: the start was too far off,
-/// for example because the coarser grids miss a peak of one point that carries the load.
+/// Iteration after which the set grows again from the highest point alone: the start was too far off, for example
+/// because the coarser grids miss a peak of one point that carries the load.
 const RESTART_ITERATION: usize = 60;
 /// Iterations before a growing number of changes is damped.
 const UNDAMPED_ITERATIONS: usize = 3;
-/// Share of a run of wrong points that changes sides at least.
+/// Smallest fraction of a run of wrong points that changes sides.
 const LEAST_DAMPING: f64 = 0.1;
-/// Iterations after which a coarse grid has done its duty, converged or not.
+/// Iterations after which a coarse grid is left, converged or not.
 const START_ITERATIONS: usize = 40;
 const MOST_KRYLOV_ITERATIONS: usize = 120;
-/// Corrections of a direct solve, and the residual that needs none.
+/// Most corrections of a direct solve, and the residual below which none is made.
 const MOST_CORRECTIONS: usize = 5;
 const ROUND_OFF: f64 = 1e-13;
 
@@ -83,14 +83,14 @@ struct Violations {
     enter: Vec<u32>,
 }
 
-/// Watches for a residual that no longer falls.
+/// Detects a residual that no longer falls.
 struct Stall {
     least: f64,
     iterations: usize,
 }
 
 impl Stall {
-    /// Takes note of a residual; whether it has stopped to fall under tight solves.
+    /// Records a residual; returns whether it has stopped falling under tight solves.
     fn after(&mut self, residual: f64, tight: bool) -> bool {
         let falls = residual < 0.5 * self.least;
         self.iterations = if falls || !tight { 0 } else { self.iterations + 1 };
@@ -100,11 +100,11 @@ impl Stall {
 }
 
 impl Contact<'_> {
-    /// Iterates to the goal.
+    /// Iterates until the goal is reached or the iterations are used up.
     pub fn solve(&mut self, goal: Goal) -> Outcome {
         let mut set = self.contact_set();
         if set.is_empty() {
-            // A coarser grid of heights beyond the range of numbers.
+            // Heights of a coarser grid may exceed the range of numbers.
             set = vec![self.highest_point()];
             self.keep_pressure_on(&set);
         }
@@ -182,8 +182,8 @@ impl Contact<'_> {
         self.iterate_on(set, tolerance, load)
     }
 
-    /// The same by dense factors, with corrections while they better the residual: where a small load stands
-    /// against large heights, the first solve leaves too few digits. None if there are no factors.
+    /// The same by dense factors, with corrections as long as they lower the residual: for a small load on large
+    /// heights the first solve has too few digits. `None` if the matrix is singular.
     fn solve_directly(&mut self, set: &[u32], load: f64) -> Option<usize> {
         let dense = Dense::new(self.kernel, set);
         let heights: Vec<f64> = set.iter().map(|i| self.heights[*i as usize]).collect();
@@ -218,7 +218,7 @@ impl Contact<'_> {
         self.space.displacement(&self.pressure, &mut self.displacement);
         let gap = |i: &u32| self.heights[*i as usize] - self.displacement[*i as usize];
         // About the first gap: a plain sum of many equal gaps has a round-off that, on a plateau
-        // under a small load, exceeds the displacement's share of 1e-10.
+        // under a small load, exceeds 1e-10 of the displacement.
         let first = set.first().map_or(0.0, gap);
         let about_first = set.iter().map(|i| gap(i) - first).sum::<f64>();
         self.mean_separation = first + about_first / set.len() as f64;
@@ -235,7 +235,7 @@ impl Contact<'_> {
         }
         let mut correction = vec![0.0; set.len()];
         preconditioner.apply(self.space, set, &r, &mut correction);
-        // A correction that is round-off of the pressures is none.
+        // Corrections below the round-off of the pressures are not needed.
         let limits = KrylovLimits {
             tolerance: (tolerance * euclidean_norm(&correction)).max(1e-15 * euclidean_norm(&t)),
             max_iterations: MOST_KRYLOV_ITERATIONS,
@@ -247,13 +247,13 @@ impl Contact<'_> {
         };
         let report = gmres(operator, &mut correction, limits, self.interrupt);
         self.place(set, t.iter().zip(&correction).map(|(t, dt)| t + dt));
-        // And for the first residual and the last displacement.
+        // Two more for the first residual and the last displacement.
         report.iterations + 2
     }
 
-    /// Largest separation on the set over the scale of displacements, or the relative error of the
-    /// load, whichever is more: where the set shrinks under far larger pressures, taking them back
-    /// costs digits of the load that only another iteration restores.
+    /// Largest separation on the set over the scale of displacements, or the relative error of the load, whichever is
+    /// larger: where the set has shrunk from far larger pressures, the load has lost digits that only another iteration
+    /// restores.
     fn residual(&self, set: &[u32]) -> f64 {
         let scale = self.displacement_scale();
         let largest =
@@ -309,8 +309,7 @@ impl Contact<'_> {
 /// one) changes sides, from the contact edge on.
 ///
 /// Where the rubber is lossy the edge condition is so weak on one side of a contact that an edge
-/// one point off makes many points change; exchanging them all at once can then overshoot for
-/// ever.
+/// one point off makes many points change; exchanging them all at once can then overshoot without end.
 fn exchange(set: &[u32], wrong: &Violations, damping: f64, points: usize) -> Vec<u32> {
     let in_contact = |i: usize| set.binary_search(&(i as u32)).is_ok();
     let chosen = |list: &[u32], leaving: bool| -> Vec<u32> {
@@ -360,7 +359,7 @@ mod tests {
     fn a_residual_that_cannot_fall_any_more_ends_the_iteration() {
         let n = 128;
         let rubber = Rubber::elastic(3e6, 0.5);
-        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.01, 1e-3, n);
+        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.01, 1e-3, n).unwrap();
         let (mut unit, mut kernel) = (vec![0.0; n], vec![0.0; n]);
         unit[0] = 1.0;
         space.displacement(&unit, &mut kernel);

@@ -1,4 +1,4 @@
-//! The pressure for a wanted contact area.
+//! The pressure that gives a contact area.
 
 use super::{ContactError, ContactSolution, SlidingContact};
 use crate::numerics::bracket::{self, End};
@@ -17,10 +17,9 @@ impl SlidingContact {
     /// inside a bracket (Anderson & Björck 1973, doi:10.1007/BF01951936).
     ///
     /// # Errors
-    /// [`ContactError::OutOfRange`] for a fraction outside `(0, 1]` or a tolerance outside
-    /// `(0, 1)`; [`ContactError::AreaNotReached`] with the nearest area if no pressure gives the
-    /// wanted one: a flat profile, or a contact too small for the grid;
-    /// [`ContactError::NotConverged`] as in [`Self::solve`].
+    /// [`ContactError::OutOfRange`] for a fraction outside `(0, 1]` or a tolerance outside `(0, 1)`;
+    /// [`ContactError::AreaNotReached`] with the nearest area if no pressure gives it: a flat profile, or a contact too
+    /// small for the grid; [`ContactError::NotConverged`] as in [`Self::solve`].
     pub fn solve_for_area(
         &mut self,
         fraction: f64,
@@ -41,7 +40,7 @@ impl SlidingContact {
 
     /// The contact whose area is the nearest to `fraction` that was found: to a relative `tolerance` of the
     /// area if the grid has such a contact. On a grid the area jumps where the contact of a lossy rubber
-    /// spreads from one point to the next; whether the nearest one is near enough is for the caller to say.
+    /// spreads from one point to the next; the caller decides whether the nearest one is near enough.
     ///
     /// # Errors
     /// As [`Self::solve_for_area`]; [`ContactError::AreaNotReached`] for a flat profile only.
@@ -65,34 +64,36 @@ impl SlidingContact {
             return self.solve(full);
         }
         let upper = End { place: full.ln(), error: -fraction.ln() };
-        Search { contact: self, fraction, tolerance, best: None }.run(upper)
-    }
-
-    /// Smallest mean pressure in Pa at which the pressure is nowhere a tension in full contact;
-    /// zero for a flat profile.
-    pub fn smallest_full_contact_pressure(&mut self) -> f64 {
-        -self.full_contact_pressure().into_iter().fold(0.0, f64::min)
+        Search::run(self, fraction, tolerance, upper)
     }
 }
 
 struct Search<'a> {
     contact: &'a mut SlidingContact,
     fraction: f64,
-    tolerance: f64,
-    best: Option<ContactSolution>,
+    /// The nearest solution found.
+    best: ContactSolution,
 }
 
-impl Search<'_> {
-    fn run(mut self, mut upper: End) -> Result<ContactSolution, ContactError> {
+impl<'a> Search<'a> {
+    /// Searches below the pressure of full contact.
+    fn run(
+        contact: &'a mut SlidingContact,
+        fraction: f64,
+        tolerance: f64,
+        mut upper: End,
+    ) -> Result<ContactSolution, ContactError> {
         // As an elastic sine would have it (Westergaard 1939).
-        let elastic = (0.5 * std::f64::consts::PI * self.fraction).sin().powi(2);
+        let elastic = (0.5 * std::f64::consts::PI * fraction).sin().powi(2);
         let mut guess = upper.place + elastic.ln();
+        let best = contact.solve(guess.exp())?;
+        let mut search = Self { contact, fraction, best };
+        let mut error = search.error_of(&search.best);
         let mut lower: Option<End> = None;
         let mut previous_error = 0.0;
-        for _ in 0..MOST_SOLVES {
-            let error = self.error_at(guess)?;
+        for _ in 1..MOST_SOLVES {
             let new = End { place: guess, error };
-            if error.abs() <= self.tolerance.ln_1p() {
+            if error.abs() <= tolerance.ln_1p() {
                 break;
             }
             guess = match (&mut lower, error > 0.0) {
@@ -115,26 +116,23 @@ impl Search<'_> {
                 }
             };
             previous_error = error;
+            error = search.error_at(guess)?;
         }
-        self.finish()
+        Ok(search.best)
     }
 
-    /// Logarithm of the area at a pressure over the wanted one; keeps the nearest solution.
+    /// Logarithm of the area at a pressure over the one sought; keeps the nearest solution.
     fn error_at(&mut self, log_pressure: f64) -> Result<f64, ContactError> {
-        let fraction = self.fraction;
-        let error_of =
-            |solution: &ContactSolution| (solution.contact_area_fraction / fraction).ln();
         let solution = self.contact.solve(log_pressure.exp())?;
-        let error = error_of(&solution);
-        let nearest = self.best.as_ref().map(|best| error_of(best).abs());
-        if nearest.is_none_or(|nearest| error.abs() < nearest) {
-            self.best = Some(solution);
+        let error = self.error_of(&solution);
+        if error.abs() < self.error_of(&self.best).abs() {
+            self.best = solution;
         }
         Ok(error)
     }
 
-    fn finish(self) -> Result<ContactSolution, ContactError> {
-        Ok(self.best.expect("at least one contact has been solved"))
+    fn error_of(&self, solution: &ContactSolution) -> f64 {
+        (solution.contact_area_fraction / self.fraction).ln()
     }
 }
 

@@ -13,14 +13,14 @@ pub struct CurvePoint {
     pub contact_area_fraction: f64,
     /// Friction coefficient.
     pub friction_coefficient: f64,
-    /// Their estimated errors by the grid; none if not known.
+    /// Their estimated errors by the grid, if known.
     pub error: Option<GridError>,
 }
 
-/// Friction at one of the wanted contact area fractions.
+/// Friction at one of the contact area fractions asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveValue {
-    /// The wanted contact area fraction.
+    /// The contact area fraction asked for.
     pub contact_area_fraction: f64,
     /// Mean pressure in Pa, interpolated.
     pub mean_pressure: f64,
@@ -28,8 +28,8 @@ pub struct CurveValue {
     pub friction_coefficient: f64,
     /// Estimated error of `friction_coefficient` by interpolation, absolute.
     pub interpolation_error: f64,
-    /// The larger of the errors by the grid of the two points that it lies between, with what an area
-    /// that is a bit off makes of the friction; none if one of them is not known.
+    /// The larger of the errors by the grid of the two points that it lies between, including the change of friction by
+    /// the error of the area; `None` if one of them is not known.
     pub discretisation_error: Option<f64>,
 }
 
@@ -39,25 +39,22 @@ pub enum CurveError<E> {
     /// A solve failed.
     #[error(transparent)]
     Solve(E),
-    /// The wanted area fractions are no ascending list between 0 and 1.
+    /// The area fractions do not ascend between 0 and 1.
     #[error("area fractions must ascend and lie between 0 and 1, found {0:?}")]
     Targets(Vec<f64>),
     /// Solves do not settle on a curve.
-    #[error(
-        "friction over contact area did not settle on a curve within {solves} solves; raise \
-         bem.tolerance or use more points"
-    )]
+    #[error("friction over contact area did not settle on a curve within {solves} solves")]
     NotSmooth {
         /// Solves so far.
         solves: usize,
     },
-    /// No pressure was found on the one side of a wanted area.
+    /// No pressure was found on one side of an area.
     #[error(
         "the contact area fraction {target} was not bracketed: after {solves} solves the nearest \
          is {found} at {pressure:e} Pa; use more points or leave this area out"
     )]
     NotBracketed {
-        /// The wanted contact area fraction.
+        /// The contact area fraction asked for.
         target: f64,
         /// Nearest fraction found.
         found: f64,
@@ -85,7 +82,7 @@ const NEAR: f64 = 0.01;
 const NARROW: f64 = 0.1;
 /// Solves that the search for the two ends may take each.
 const MOST_BRACKETING_SOLVES: usize = 24;
-/// Solves per target before the curve is given up as no curve.
+/// Solves per target after which the search for a curve ends.
 const MOST_SOLVES_PER_TARGET: usize = 8;
 
 /// Friction at the `targets` (contact area fractions, ascending), from solves that start at the

@@ -1,15 +1,14 @@
 //! Direct solves for small contacts.
 //!
-//! A contact of a few points on a fine grid is a small dense system, whose matrix is read from the kernel.
-//! Its factors cost less than the transforms of the whole grid that an iteration takes, so that what is left of
-//! a fine grid is one transform to see whether the rest of it stays open.
+//! A contact of a few points on a fine grid is a small dense system, whose matrix is read from the kernel. Its factors
+//! cost less than the transforms of the whole grid that an iteration takes, and a fine grid then needs only one
+//! transform, to check that its other points stay open.
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Col, Mat};
 
-/// Multiplications of the factors, a third of the cube of the contact points, for each point of the grid
-/// times its binary logarithm, up to which they are cheaper than an iteration: about where both cost the
-/// same for grids of 1024 to 65536 points.
+/// Largest ratio of the multiplications of the factors, `m³/3` for `m` contact points, to `n log2 n` of a grid of `n`
+/// points at which factors are used: about where they cost as much as an iteration, for 1024 to 65536 points.
 const WORTH: f64 = 30.0;
 
 /// Whether a set of `contact` points on a grid of `points` is small enough.
@@ -21,7 +20,7 @@ pub(super) fn is_worth_it(contact: usize, points: usize) -> bool {
 /// The dense system of a contact set, factorised.
 pub(super) struct Dense {
     factors: PartialPivLu<f64>,
-    /// The size of a displacement, which the separation is taken in, so that all columns are alike.
+    /// Scale of a displacement in m/Pa, the unit of the separation, so that all columns have the same size.
     softness: f64,
 }
 
@@ -39,11 +38,10 @@ impl Dense {
     }
 
     /// Pressures `t_j` in Pa with the sum `load` for which `sum_j K(i - j) t_j + ubar = gap_i`, with some
-    /// separation `ubar`. None if the system is singular to working precision.
+    /// separation `ubar`. `None` if the system is singular to working precision.
     pub fn solve(&self, gaps: &[f64], load: f64) -> Option<Vec<f64>> {
         let m = gaps.len();
-        // A separation that all have in common is no matter of the pressures: taken off first, it costs no
-        // digits of them.
+        // A separation common to all points does not change the pressures; subtracted first, it costs them no digits.
         let common = gaps[0];
         let right =
             Col::from_fn(m + 1, |i| if i == m { load } else { (gaps[i] - common) / self.softness });
@@ -66,7 +64,7 @@ mod tests {
         let (name, equilibrium_modulus, poisson_ratio) = ("one branch".into(), 2e6, 0.45);
         let rubber = Rubber { name, equilibrium_modulus, branches, poisson_ratio };
         let n = 512;
-        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.2, 1e-3, n);
+        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.2, 1e-3, n).unwrap();
         let mut unit = vec![0.0; n];
         unit[0] = 1.0;
         let mut kernel = vec![0.0; n];

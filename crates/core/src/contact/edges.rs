@@ -1,9 +1,8 @@
 //! Contact area with the edges read between grid points.
 //!
-//! The two or three pressures next to a contact edge carry errors of order one of the
-//! discretisation, so their shape says little of where the edge lies. What is exact is this:
-//! next to an edge the discrete problem is one of a half-line, and its solutions for smooth
-//! heights are, with `z` the shift by one grid point away from the edge (Wiener-Hopf),
+//! The two or three pressures next to a contact edge have discretisation errors of order one, so their shape does not
+//! locate the edge. An exact statement does: next to an edge the discrete problem is one of a half-line, and its
+//! solutions for smooth heights are, with `z` the shift by one grid point away from the edge (Wiener-Hopf),
 //!
 //! ```text
 //! Σ_j t_j z^j = (c_0 / (1-z) + c_1 / (1-z)² + ...) / A_+(z),    A(z) = A_+(z) A_-(1/z)
@@ -15,9 +14,12 @@
 //! `A_+` and the factor of the continuous symbol differ for long waves. The exponents with which
 //! the pressure grows (a half for an elastic body, others for a lossy one, different at the
 //! leading and the trailing edge) never appear.
+//!
+//! The integrals run over waves that the grid does not hold. There a measured rubber has the modulus at the nearer end
+//! of its measurement: this moves the offset by some hundredths of a grid step, and no pressure.
 
 use super::half_space::compliance;
-use crate::rubber::Rubber;
+use crate::rubber::Viscoelastic;
 use std::f64::consts::PI;
 
 /// Pressures next to an edge that are read: their polynomial is a cubic.
@@ -38,7 +40,7 @@ pub(super) struct EdgeReader {
 
 impl EdgeReader {
     /// Reader for a sliding `speed` in m/s and a grid `spacing` in m.
-    pub fn new(rubber: &Rubber, speed: f64, spacing: f64) -> Self {
+    pub fn new(rubber: &dyn Viscoelastic, speed: f64, spacing: f64) -> Self {
         let symbol = |angle: f64| compliance(rubber, speed, angle / spacing, angle / PI);
         let unit = symbol(PI).norm();
         let mut even = [0.0; MOST_PRESSURES];
@@ -70,7 +72,7 @@ impl EdgeReader {
     /// Contact area fraction: the measure of the set where the pressure is positive.
     ///
     /// It changes continuously as points come into contact; counting points would make it jump.
-    /// `displacement` and `separation` are read around islands of one point only.
+    /// `displacement` and `separation` are read around patches of one point only.
     pub fn contact_area_fraction(
         &self,
         pressure: &[f64],
@@ -98,21 +100,21 @@ impl EdgeReader {
         steps / n as f64
     }
 
-    /// Distance in grid steps from `first`, the first contact point of an island, back to its
+    /// Distance in grid steps from `first`, the first contact point of a patch, back to its
     /// edge.
     pub fn overhang_before(&self, pressure: &[f64], first: usize) -> f64 {
         let n = pressure.len();
         self.overhang(|j| pressure[(first + j) % n], &self.towards_growing)
     }
 
-    /// Distance in grid steps from `last`, the last contact point of an island, on to its edge.
+    /// Distance in grid steps from `last`, the last contact point of a patch, on to its edge.
     pub fn overhang_after(&self, pressure: &[f64], last: usize) -> f64 {
         let n = pressure.len();
         // The grid has more points than are ever read.
         self.overhang(|j| pressure[(last + n - j) % n], &self.towards_falling)
     }
 
-    /// Overhang for the pressures from the edge on. Of a small island no more than half of the
+    /// Overhang for the pressures from the edge on. Of a small patch no more than half of the
     /// points are read, since beyond its middle they belong to the other edge.
     fn overhang(&self, pressure: impl Fn(usize) -> f64, filter: &[f64; MOST_PRESSURES]) -> f64 {
         let length = (0..2 * MOST_PRESSURES - 1).take_while(|j| pressure(*j) > 0.0).count();
@@ -124,7 +126,7 @@ impl EdgeReader {
         self.offset + zero_before(&filtered[..read])
     }
 
-    /// Width in grid steps of an island of one point: that of two points of which one just
+    /// Width in grid steps of a patch of one point: that of two points of which one just
     /// touches, reduced like the contact of a parabola by the root of the indentation.
     fn width_of_single_point(&self, i: usize, displacement: &[f64], separation: &[f64]) -> f64 {
         let n = displacement.len();
@@ -159,10 +161,10 @@ fn exponential(series: &[f64]) -> [f64; MOST_PRESSURES] {
     result
 }
 
-/// Distance before the place 0, at most 1, at which the polynomial through `values` at the places
-/// 0, 1, ... vanishes; the first value is positive.
+/// Distance before the abscissa 0, at most 1, at which the polynomial through `values` at 0, 1, ... vanishes; the first
+/// value is positive.
 ///
-/// A point further out that could be in contact is in contact, so the zero is never further.
+/// The next point outwards is open, so the zero is not further away.
 fn zero_before(values: &[f64]) -> f64 {
     // Newton's backward differences: value at -s is Σ_k (-1)^k Δ^k (s)(s+1)...(s+k-1)/k!.
     let mut differences = [0.0; MOST_PRESSURES];
@@ -197,6 +199,7 @@ fn zero_before(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rubber::Rubber;
 
     /// Offset for an elastic body: `1/π (∫_0^π ln θ (1/(4 sin²(θ/2)) - 1/θ²) dθ - (1 + ln π)/π)`,
     /// by adaptive quadrature.
@@ -242,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn full_contact_no_contact_and_tiny_islands() {
+    fn full_contact_no_contact_and_tiny_patches() {
         assert_eq!(area(&[1.0; 8]), 1.0);
         assert_eq!(area(&[0.0; 8]), 0.0);
         // Two points read as more than one step, three as more than two.
@@ -255,11 +258,11 @@ mod tests {
     }
 
     #[test]
-    fn an_island_may_lie_across_the_end_of_the_grid() {
-        let island = [1.0, 2.0, 2.5, 2.2, 1.3];
+    fn a_patch_may_lie_across_the_end_of_the_grid() {
+        let patch = [1.0, 2.0, 2.5, 2.2, 1.3];
         let at = |start: usize| {
             let mut pressure = [0.0; 16];
-            island.iter().enumerate().for_each(|(j, t)| pressure[(start + j) % 16] = *t);
+            patch.iter().enumerate().for_each(|(j, t)| pressure[(start + j) % 16] = *t);
             area(&pressure)
         };
         for start in 1..16 {

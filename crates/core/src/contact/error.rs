@@ -5,7 +5,7 @@ use crate::error_kind::{ErrorKind, HasKind};
 /// Why there is no solution to report.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ContactError {
-    /// The rubber's numbers are no rubber.
+    /// The numbers of the rubber are out of range, or it was not measured at a frequency that is needed.
     #[error(transparent)]
     Rubber(#[from] crate::rubber::RubberError),
     /// A number outside its range.
@@ -18,7 +18,7 @@ pub enum ContactError {
         /// The range it must lie in.
         range: &'static str,
     },
-    /// A height that is no number.
+    /// A height that is not a number.
     #[error("height {index} of the profile is {value}: fill or cut missing points first")]
     BadHeight {
         /// Zero-based index of the first bad height.
@@ -49,13 +49,13 @@ pub enum ContactError {
     /// The user's interrupt.
     #[error("interrupted")]
     Interrupted,
-    /// No pressure was found that gives the wanted contact area.
+    /// No pressure was found that gives the contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {points} points: the nearest \
          found is {found} at {pressure:e} Pa; use more points for a smaller area"
     )]
     AreaNotReached {
-        /// The wanted contact area fraction.
+        /// The contact area fraction asked for.
         wanted: f64,
         /// The nearest one found.
         found: f64,
@@ -77,8 +77,7 @@ impl HasKind for ContactError {
 }
 
 impl ContactError {
-    /// Whether the solver found no solution; otherwise it was not asked for one that there could be, or
-    /// was interrupted.
+    /// Whether the solver ran and found no solution; other errors are wrong input or an interrupt.
     pub fn is_no_solution(&self) -> bool {
         matches!(self, Self::NotConverged { .. } | Self::AreaNotReached { .. })
     }

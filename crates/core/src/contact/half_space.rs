@@ -1,22 +1,20 @@
 //! The half-space operator in Fourier space.
 
-use crate::rubber::Rubber;
+use crate::rubber::{FrequencyRange, RubberError, Viscoelastic};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-/// Surface displacement of a viscoelastic half-space under a pressure that stands still in the
-/// frame of the profile, on `points` equidistant points of one period:
-/// `w_hat(q) = 2 / (|q| E_r(q v)) t_hat(q)` for `q != 0`, `w_hat(0) = 0`.
+/// Surface displacement of a viscoelastic half-space under a pressure that is steady in the frame of the profile, on
+/// `points` equidistant points of one period: `w_hat(q) = 2 / (|q| E_r(q v)) t_hat(q)` for `q != 0`, `w_hat(0) = 0`.
 ///
-/// The highest wave of a grid has no direction, so a symbol whose phase is not zero there jumps,
-/// and its kernel rings with alternating sign; contact sets then fray at the edges. The phase is
-/// therefore taken back smoothly towards the highest wave, `arg C` times
-/// `cos^2(π/2 (q/q_max)^2)`: a change of order `(q/q_max)^4` for the waves that the grid resolves,
-/// and no change at all for an elastic body.
+/// The highest wave of a grid has no direction, so a symbol whose phase is not zero there jumps, and its kernel rings
+/// with alternating sign; contact sets then fray at the edges. The phase is therefore tapered smoothly towards the
+/// highest wave, `arg C` times `cos^2(π/2 (q/q_max)^2)`: a change of order `(q/q_max)^4` for the waves that the grid
+/// resolves, and no change at all for an elastic body.
 ///
-/// Buffers are held here, so that an application allocates nothing.
+/// The operator owns its buffers, so that an application allocates nothing.
 pub struct HalfSpace {
     points: usize,
     period: f64,
@@ -29,7 +27,7 @@ pub struct HalfSpace {
     scratch: Vec<Complex64>,
 }
 
-/// Which way an application of the operator goes.
+/// Direction of an application of the operator.
 #[derive(Clone, Copy)]
 enum Direction {
     PressureToDisplacement,
@@ -38,14 +36,21 @@ enum Direction {
 
 impl HalfSpace {
     /// Operator for a `period` in m, a sliding `speed` in m/s (negative: against `+x`) and a
-    /// number of grid `points`.
+    /// number of grid `points`, at least two.
+    ///
+    /// # Errors
+    /// [`RubberError::NotMeasured`] if the rubber is not known at the frequency `q v / 2π` of a wave of the grid.
     pub fn new(
         planner: &mut RealFftPlanner<f64>,
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         points: usize,
-    ) -> Self {
+    ) -> Result<Self, RubberError> {
+        let waves = [period, period / (points / 2) as f64];
+        if let Some(excited) = FrequencyRange::excited(waves, [speed.abs()]) {
+            rubber.require(excited)?;
+        }
         let forward = planner.plan_fft_forward(points);
         let backward = planner.plan_fft_inverse(points);
         let bins = points / 2 + 1;
@@ -60,7 +65,7 @@ impl HalfSpace {
             .map(|c| if *c == Complex64::ZERO { Complex64::ZERO } else { c.inv() })
             .collect();
         let scratch = forward.get_scratch_len().max(backward.get_scratch_len());
-        Self {
+        Ok(Self {
             points,
             period,
             compliance,
@@ -70,7 +75,7 @@ impl HalfSpace {
             real: vec![0.0; points],
             spectrum: vec![Complex64::ZERO; bins],
             scratch: vec![Complex64::ZERO; scratch],
-        }
+        })
     }
 
     /// Number of grid points.
@@ -242,7 +247,12 @@ impl HalfSpace {
 
 /// Compliance in m/Pa of the wave with `wavenumber` in rad/m, which is the `relative` part of the
 /// highest wavenumber of the grid.
-pub(super) fn compliance(rubber: &Rubber, speed: f64, wavenumber: f64, relative: f64) -> Complex64 {
+pub(super) fn compliance(
+    rubber: &dyn Viscoelastic,
+    speed: f64,
+    wavenumber: f64,
+    relative: f64,
+) -> Complex64 {
     if wavenumber == 0.0 {
         return Complex64::ZERO;
     }
@@ -258,7 +268,7 @@ pub(super) fn compliance(rubber: &Rubber, speed: f64, wavenumber: f64, relative:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rubber::MaxwellBranch;
+    use crate::rubber::{MaxwellBranch, Rubber};
 
     fn rubber() -> Rubber {
         Rubber {
@@ -272,7 +282,8 @@ mod tests {
     #[test]
     fn one_wave_is_scaled_and_shifted_by_the_modulus() {
         let (n, period, speed) = (4096, 1e-3, 0.2);
-        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber(), speed, period, n);
+        let mut space =
+            HalfSpace::new(&mut RealFftPlanner::new(), &rubber(), speed, period, n).unwrap();
         let q = TAU * 3.0 / period;
         let x = |i: usize| i as f64 * period / n as f64;
         let pressure: Vec<f64> = (0..n).map(|i| 7.0 + (q * x(i)).cos()).collect();
@@ -289,7 +300,8 @@ mod tests {
     #[test]
     fn pressure_inverts_displacement_on_odd_and_even_grids() {
         for n in [64, 65] {
-            let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber(), 1.0, 1e-3, n);
+            let mut space =
+                HalfSpace::new(&mut RealFftPlanner::new(), &rubber(), 1.0, 1e-3, n).unwrap();
             let t: Vec<f64> = (0..n).map(|i| ((i * i) as f64 * 0.7).sin()).collect();
             let mean = t.iter().sum::<f64>() / n as f64;
             let (mut w, mut back) = (vec![0.0; n], vec![0.0; n]);
@@ -304,7 +316,8 @@ mod tests {
     #[test]
     fn the_power_of_the_pressure_is_the_work_on_the_slope_of_the_displacement() {
         let n = 500;
-        let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber(), 0.3, 1e-3, n);
+        let mut space =
+            HalfSpace::new(&mut RealFftPlanner::new(), &rubber(), 0.3, 1e-3, n).unwrap();
         let t: Vec<f64> = (0..n).map(|i| ((i * i) as f64 * 0.11).sin().max(0.0)).collect();
         let mut w = vec![0.0; n];
         space.displacement(&t, &mut w);

@@ -1,6 +1,6 @@
 //! Steady sliding contact of a linear viscoelastic half-space with a rigid periodic profile.
 //!
-//! In the frame of the profile the field stands still. Separation, pressure and load obey
+//! In the frame of the profile the field is steady. Separation, pressure and load obey
 //!
 //! ```text
 //! u(x) = ubar + w(x) - z(x),   t >= 0,  u >= 0,  u t = 0,   mean(t) = p
@@ -10,14 +10,14 @@
 //! | module | what it does |
 //! |---|---|
 //! | [`half_space`] | the operator from pressure to displacement, by FFT |
-//! | `islands`, `preconditioner` | runs of contact points; the operator's approximate inverse on them |
+//! | `patches`, `preconditioner` | runs of contact points; the operator's approximate inverse on them |
 //! | `active_set` | the contact set and the pressures on one grid |
 //! | `direct` | small contacts by dense factors |
 //! | [`sliding`] | nested grids from coarse to fine: the solver that users call |
 //! | [`solution`] | friction, area, separation, dissipation and residual of a solved contact |
-//! | [`area`] | the pressure that gives a wanted contact area |
+//! | [`area`] | the pressure that gives a contact area |
 //! | [`curve`] | friction over contact area, from few solves |
-//! | [`refine`] | grids fine enough for a wanted accuracy of friction |
+//! | [`refine`] | grids fine enough for a given accuracy of friction |
 
 pub mod area;
 pub mod curve;
@@ -30,7 +30,7 @@ mod active_set;
 mod direct;
 mod edges;
 mod error;
-mod islands;
+mod patches;
 pub(crate) mod preconditioner;
 
 pub use curve::{CurvePoint, CurveValue, friction_curve};

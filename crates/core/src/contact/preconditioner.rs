@@ -1,13 +1,13 @@
 //! Approximate inverse of the half-space operator on a contact set.
 
 use super::half_space::HalfSpace;
-use super::islands::Islands;
+use super::patches::Patches;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatMut};
 
-/// More islands than this are merged for the coarse part: its dense factors then cost less than
-/// one transform of the grids on which so many islands occur.
-const MOST_ISLANDS: usize = 256;
+/// More patches than this are merged for the coarse part: its dense factors then cost less than
+/// one transform of the grids on which so many patches occur.
+const MOST_PATCHES: usize = 256;
 
 /// What the preconditioner needs of an operator from pressures to displacements on a set.
 pub(crate) trait SetOperator {
@@ -15,7 +15,7 @@ pub(crate) trait SetOperator {
     fn points(&self) -> usize;
     /// Displacements on the set under pressures on it.
     fn displacement_on(&mut self, set: &[u32], pressure: &[f64], out: &mut [f64]);
-    /// Pressures that make the displacements, by an inverse that is good within an island.
+    /// Pressures that make the displacements, by an inverse that is good within a patch.
     fn pressure_on(&mut self, set: &[u32], displacement: &[f64], out: &mut [f64]);
     /// Pressures under a flat punch on the set, to any scale.
     fn punch_on(&mut self, set: &[u32], out: &mut [f64]);
@@ -48,14 +48,13 @@ impl SetOperator for HalfSpace {
 /// load: the solution of `[A e; e^T 0] [t; ubar] = [r; 0]` with `A` the half-space operator
 /// restricted to the set.
 ///
-/// Two parts. Within an island the restriction of the inverse operator (a filter by
-/// `|q| E_r / 2`) is close to the inverse of the restriction. Between islands it is not, since it
-/// holds the free surface in the gaps still: there the displacement of each island is reduced to
-/// one number, and the forces between islands come from a small dense system in which islands act
-/// on each other as point forces.
+/// Two parts. Within a patch the restriction of the inverse operator (a filter by `|q| E_r / 2`) is close to the
+/// inverse of the restriction. Between patches it is not, since it keeps the free surface between them at rest: there
+/// the displacement of each patch is reduced to one number, and the forces between patches come from a small dense
+/// system in which patches act on each other as point forces.
 pub(crate) struct Preconditioner {
-    islands: Islands,
-    /// Pressure under a flat punch on each island, with unit sum.
+    patches: Patches,
+    /// Pressure under a flat punch on each patch, with unit sum.
     shape: Vec<f64>,
     coarse: Option<Coarse>,
 }
@@ -70,31 +69,31 @@ impl Preconditioner {
     /// at point 0.
     pub fn new(space: &mut impl SetOperator, kernel: &[f64], set: &[u32]) -> Self {
         let points = space.points();
-        let islands = Islands::of(set, points, MOST_ISLANDS);
+        let patches = Patches::new(set, points, MOST_PATCHES);
         let mut shape = vec![0.0; set.len()];
         space.punch_on(set, &mut shape);
-        // The gaps make the edges of an island stiff, so the sum is positive. Merging may break
-        // it: there a uniform pressure serves.
-        let sums = islands.sums(shape.iter().copied());
-        let counts = islands.sums(std::iter::repeat_n(1.0, set.len()));
-        for (s, id) in shape.iter_mut().zip(&islands.of_point) {
+        // The gaps make the edges of a patch stiff, so the sum is positive. After merging it may not be: then the
+        // pressure is uniform.
+        let sums = patches.sums(shape.iter().copied());
+        let counts = patches.sums(std::iter::repeat_n(1.0, set.len()));
+        for (s, id) in shape.iter_mut().zip(&patches.of_point) {
             let id = *id as usize;
             *s = if sums[id] > 0.0 { *s / sums[id] } else { 1.0 / counts[id] };
         }
-        let coarse = (islands.count > 1).then(|| Coarse::new(space, kernel, set, &islands, &shape));
-        Self { islands, shape, coarse }
+        let coarse = (patches.count > 1).then(|| Coarse::new(space, kernel, set, &patches, &shape));
+        Self { patches, shape, coarse }
     }
 
-    /// Spreads `force` (a sum over grid points) over the set, each island in proportion to its
+    /// Spreads `force` (a sum over grid points) over the set, each patch in proportion to its
     /// present load.
     pub fn add_force(&self, force: f64, pressure: &mut [f64]) {
-        let loads = self.islands.sums(pressure.iter().map(|t| t.max(0.0)));
+        let loads = self.patches.sums(pressure.iter().map(|t| t.max(0.0)));
         let total: f64 = loads.iter().sum();
-        for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.islands.of_point) {
+        for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.patches.of_point) {
             let share = if total > 0.0 {
                 loads[*id as usize] / total
             } else {
-                1.0 / self.islands.count as f64
+                1.0 / self.patches.count as f64
             };
             *t += force * share * s;
         }
@@ -108,23 +107,23 @@ impl Preconditioner {
         r: &[f64],
         pressure: &mut [f64],
     ) {
-        let means = self.islands.sums(r.iter().zip(&self.shape).map(|(r, s)| r * s));
+        let means = self.patches.sums(r.iter().zip(&self.shape).map(|(r, s)| r * s));
         let local: Vec<f64> =
-            r.iter().zip(&self.islands.of_point).map(|(r, id)| r - means[*id as usize]).collect();
+            r.iter().zip(&self.patches.of_point).map(|(r, id)| r - means[*id as usize]).collect();
         space.pressure_on(set, &local, pressure);
-        let mut forces = self.islands.sums(pressure.iter().copied());
+        let mut forces = self.patches.sums(pressure.iter().copied());
         let between = match &self.coarse {
             Some(coarse) => coarse.solve(&means),
-            None => vec![0.0; self.islands.count],
+            None => vec![0.0; self.patches.count],
         };
         for (f, b) in forces.iter_mut().zip(&between) {
             *f = b - *f;
         }
-        for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.islands.of_point) {
+        for ((t, s), id) in pressure.iter_mut().zip(&self.shape).zip(&self.patches.of_point) {
             *t += s * forces[*id as usize];
         }
-        // A pressure that makes a uniform displacement is invisible to this inverse. Round-off in
-        // the sum is all that could lead a Krylov method there, so it is taken off.
+        // A pressure that makes a uniform displacement is invisible to this inverse. A Krylov method could reach it
+        // through round-off in the sum alone, so that is subtracted.
         let mean = pressure.iter().sum::<f64>() / pressure.len() as f64;
         pressure.iter_mut().for_each(|t| *t -= mean);
     }
@@ -135,14 +134,14 @@ impl Coarse {
         space: &mut impl SetOperator,
         kernel: &[f64],
         set: &[u32],
-        islands: &Islands,
+        patches: &Patches,
         shape: &[f64],
     ) -> Self {
-        let (points, count) = (space.points(), islands.count);
-        let centres = islands.centres(set, points, shape);
+        let (points, count) = (space.points(), patches.count);
+        let centres = patches.centres(set, points, shape);
         let mut displaced = vec![0.0; set.len()];
         space.displacement_on(set, shape, &mut displaced);
-        let row_sums = islands.sums(displaced.iter().zip(shape).map(|(w, s)| w * s));
+        let row_sums = patches.sums(displaced.iter().zip(shape).map(|(w, s)| w * s));
         let scale = kernel[0].abs();
         let mut matrix = Mat::<f64>::zeros(count + 1, count + 1);
         for j in 0..count {
@@ -153,8 +152,8 @@ impl Coarse {
                 matrix[(j, k)] = influence / scale;
                 others += influence;
             }
-            // One application to all shapes at once gives the row sums; what the other islands
-            // do not explain is the island's own compliance.
+            // One application to all shapes at once gives the row sums; what the other patches
+            // do not explain is the patch's own compliance.
             matrix[(j, j)] = (row_sums[j] - others) / scale;
             matrix[(j, count)] = 1.0;
             matrix[(count, j)] = 1.0;
@@ -162,7 +161,7 @@ impl Coarse {
         Self { factors: matrix.partial_piv_lu(), scale }
     }
 
-    /// Forces on the islands (sum zero) for their mean displacements.
+    /// Forces on the patches (sum zero) for their mean displacements.
     fn solve(&self, means: &[f64]) -> Vec<f64> {
         let mut rhs: Vec<f64> = means.iter().map(|m| m / self.scale).collect();
         rhs.push(0.0);

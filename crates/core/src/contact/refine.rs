@@ -1,4 +1,4 @@
-//! Friction to a wanted accuracy: grids are doubled until they agree.
+//! Friction to a given accuracy: grids are doubled until they agree.
 //!
 //! Friction and contact area of a resolved contact converge with the spacing, but not smoothly: contact edges fall
 //! between points, differently on every grid. One difference between two grids may therefore be small by chance. The
@@ -10,37 +10,37 @@
 //!
 //! with `r` of [`HALF_SPACE`] or of [`FINITE_ELEMENTS`]. For `r = 4` it is three times the error of an exactly quadratic
 //! sequence, which is the margin for all others: on a hundred random surfaces the true error of friction is below the
-//! estimate in 98, and a fifth of it in the median; `tests/convergence` demands 95 and a tenth, of finite elements too.
+//! estimate in 98, and a fifth of it in the median; `tests/convergence` requires 95 and a tenth, of finite elements too.
 
 use crate::error_kind::{ErrorKind, HasKind};
 
 /// Doublings that the estimate looks back on.
 const DIFFERENCES: usize = 3;
-/// The half-space, which reads the edges of contact between grid points.
+/// Convergence on the half-space, where contact edges are read between grid points.
 pub const HALF_SPACE: Orders = Orders { friction: 4.0, area: 8.0 };
-/// Finite elements, whose area is known to a share of an element.
+/// Convergence of finite elements, whose area is known to a fraction of an element.
 pub const FINITE_ELEMENTS: Orders = Orders { friction: 4.0, area: 2.0 };
-/// Weight of a relative error of the area where friction over area is wanted. Tables of road surfaces have
+/// Weight of a relative error of the area in friction as a function of area. Tables of road surfaces have
 /// `|d ln friction / d ln area|` of up to 0.25 in their means.
 pub const AREA_WEIGHT: f64 = 0.25;
-/// Fewer points in contact are one node of the grid, whose friction is the slope of the profile
-/// there, the same on the next grids.
+/// With fewer points in contact friction is the slope of the profile at one node, the same on the next grids: such a
+/// grid does not resolve the contact.
 pub const LEAST_CONTACT_POINTS: f64 = 2.0;
-/// Friction below this matters to nobody: relative tolerances refer to it there.
+/// Friction to which relative tolerances refer where friction is smaller.
 pub const LEAST_FRICTION: f64 = 1e-4;
 
-/// Relative accuracies that can be asked for, everywhere. Residuals are below 1e-10 and an error is estimated
-/// from differences of solves, which below 1e-8 are rounding; above a half not one digit is right. Whether a
-/// problem reaches its accuracy is for the solver to say, with the error that it has reached.
+/// Relative accuracies that can be asked for, everywhere. Residuals are below 1e-10 and an error is estimated from
+/// differences of solves, which below 1e-8 are rounding; above a half not one digit is right. Whether a problem reaches
+/// its accuracy the solver reports, with the error reached.
 pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-8..=0.5;
-/// The same in a message.
+/// The same range as text.
 pub const TOLERANCES_IN_WORDS: &str = "between 1e-8 and 0.5 (0.1 % is 0.001)";
-/// Shares of such an accuracy that may go to grids, interpolation or realisations alone: a quarter and more.
+/// Fractions of such an accuracy that grids, interpolation or realisations alone may take: a quarter or more.
 pub const SHARES: std::ops::RangeInclusive<f64> = 1e-9..=0.5;
-/// The same in a message.
+/// The same range as text.
 pub const SHARES_IN_WORDS: &str = "between 1e-9 and 0.5 (0.1 % is 0.001)";
 
-/// What errors fall by with each doubling of the grid.
+/// Factors by which errors fall with each doubling of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orders {
     /// That of the friction coefficient.
@@ -108,7 +108,7 @@ pub enum RefineError<E> {
         )
     )]
     NotReached {
-        /// The wanted relative accuracy.
+        /// The relative accuracy asked for.
         tolerance: f64,
         /// Estimated relative error on the finest grid that was solved.
         reached: Option<f64>,
@@ -131,7 +131,7 @@ impl<E: HasKind + 'static> HasKind for RefineError<E> {
 /// How far and how finely grids are refined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Refinement {
-    /// Wanted relative accuracy.
+    /// Relative accuracy.
     pub tolerance: f64,
     /// Of what.
     pub watched: Watched,
@@ -145,11 +145,11 @@ pub struct Refinement {
 
 impl Refinement {
     /// Solves on grids of doubled points until the estimated error is within the tolerance. `solve`
-    /// gives none for a grid on which there is no solution; the estimate then begins anew.
+    /// returns `None` for a grid without a solution; the estimate then starts again.
     ///
     /// # Errors
-    /// [`RefineError::NotReached`] as soon as the order of convergence shows that the finest
-    /// grid will not do; errors of `solve` are passed on.
+    /// [`RefineError::NotReached`] as soon as the order of convergence shows that the finest grid would not reach the
+    /// tolerance; errors of `solve` are passed on.
     pub fn run<S, E>(
         &self,
         mut solve: impl FnMut(usize) -> Result<Option<S>, E>,
@@ -201,7 +201,7 @@ impl Refinement {
 /// than `least` points are left out.
 ///
 /// # Errors
-/// Those of `solve`; on a coarser grid only those that are not `no_solution`, behind which the estimate begins anew.
+/// Those of `solve`; on a coarser grid only those that are not `no_solution`, after which the estimate starts again.
 pub fn on_grid<S, E>(
     points: usize,
     least: usize,

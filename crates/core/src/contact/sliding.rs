@@ -6,7 +6,7 @@ use super::error::ContactError;
 use super::half_space::HalfSpace;
 use super::solution::{ContactSolution, Fields};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberError, Viscoelastic};
 use realfft::RealFftPlanner;
 
 /// Residual below which a contact counts as solved; see [`ContactSolution::residual`].
@@ -18,7 +18,7 @@ pub(crate) const INNER_TOLERANCE: f64 = 2e-11;
 /// Grids are halved down to about this many points.
 pub(crate) const COARSEST_POINTS: usize = 64;
 
-/// The grids on which the contact can be asked for, and the rubber it is asked for.
+/// Numbers of grid points for which a contact can be set up.
 pub const POINTS_RANGE: std::ops::RangeInclusive<usize> = 8..=1 << 24;
 
 /// A rubber half-space sliding at constant speed over a rigid periodic profile.
@@ -46,7 +46,9 @@ pub const POINTS_RANGE: std::ops::RangeInclusive<usize> = 8..=1 << 24;
 /// ```
 pub struct SlidingContact {
     speed: f64,
-    grids: Vec<Grid>,
+    /// Grids that a solve starts on, the coarsest first.
+    coarser: Vec<Grid>,
+    finest: Grid,
     slopes: Vec<f64>,
     height_range: f64,
     interrupt: Interrupt,
@@ -66,9 +68,11 @@ impl SlidingContact {
     ///
     /// # Errors
     /// [`ContactError::OutOfRange`] for a period that is not positive, a speed that is not
-    /// finite or a number of points outside [`POINTS_RANGE`]; [`ContactError::BadHeight`].
+    /// finite or a number of points outside [`POINTS_RANGE`]; [`ContactError::BadHeight`];
+    /// [`ContactError::Rubber`] for numbers that no rubber has, or if the modulus is not known at the
+    /// frequency of a wave of the grid.
     pub fn new(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -82,7 +86,7 @@ impl SlidingContact {
     /// # Errors
     /// As [`Self::new`]; [`ContactError::Interrupted`].
     pub fn new_interruptible(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -94,18 +98,19 @@ impl SlidingContact {
         let mut planner = RealFftPlanner::new();
         let mut grid = |heights| -> Result<Grid, ContactError> {
             check_interrupt(interrupt)?;
-            Ok(Grid::new(&mut planner, rubber, speed, period, heights))
+            Ok(Grid::new(&mut planner, rubber, speed, period, heights)?)
         };
-        let mut grids = vec![grid(centred)?];
-        while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
-            let coarser = coarsen(&grids[grids.len() - 1].heights);
-            grids.push(grid(coarser)?);
+        let mut finest = grid(centred)?;
+        let mut coarser = Vec::new();
+        let mut coarsest = &finest.heights;
+        while coarsest.len() >= 2 * COARSEST_POINTS {
+            coarser.push(grid(coarsen(coarsest))?);
+            coarsest = coarser.last().map_or(&finest.heights, |grid: &Grid| &grid.heights);
         }
-        let finest = &mut grids[0];
+        coarser.reverse();
         let slopes = finest.space.slope(&finest.heights);
-        grids.reverse();
         let (height_range, interrupt) = (extremes.1 - extremes.0, interrupt.clone());
-        Ok(Self { speed, grids, slopes, height_range, interrupt })
+        Ok(Self { speed, coarser, finest, slopes, height_range, interrupt })
     }
 
     /// Number of points of the finest grid.
@@ -135,9 +140,8 @@ impl SlidingContact {
         self.accept(solution, Some(outcome))
     }
 
-    /// Lets a solution pass only if its residual, evaluated afresh, is small enough: the iteration
-    /// may have rested where it could not improve, and full contact under a pressure beyond the
-    /// reach of double precision is no solution either.
+    /// Returns a solution only if its residual, evaluated anew, is small enough: the iteration may have stalled above
+    /// the tolerance, and full contact under a pressure beyond the reach of double precision has a large residual too.
     fn accept(
         &self,
         solution: ContactSolution,
@@ -162,19 +166,19 @@ impl SlidingContact {
         self.height_range
     }
 
-    /// The smallest mean pressure in Pa of full contact: nowhere is its pressure a tension then.
-    pub fn full_contact_limit(&mut self) -> f64 {
-        -self.full_contact_pressure().into_iter().fold(0.0_f64, f64::min)
+    /// Smallest mean pressure in Pa at which the pressure is nowhere a tension in full contact;
+    /// zero for a flat profile.
+    pub fn smallest_full_contact_pressure(&mut self) -> f64 {
+        -self.full_contact_pressure().into_iter().fold(0.0, f64::min)
     }
 
-    /// In full contact the pressure follows from the heights at once; it is the solution if it is
-    /// nowhere a tension.
+    /// Full contact, where the pressure follows from the heights directly; `None` if it would be a tension somewhere.
     pub(super) fn full_contact(&mut self, mean_pressure: f64) -> Option<ContactSolution> {
         let pressure = self.full_contact_pressure();
         if pressure.iter().any(|t| mean_pressure + t < 0.0) {
             return None;
         }
-        let finest = self.grids.last_mut()?;
+        let finest = &mut self.finest;
         let fields = Fields {
             mean_pressure,
             mean_separation: 0.0,
@@ -191,11 +195,8 @@ impl SlidingContact {
 
     /// The mean-free part of the pressure in full contact, in Pa.
     pub(super) fn full_contact_pressure(&mut self) -> Vec<f64> {
-        let points = self.points();
-        let mut pressure = vec![0.0; points];
-        if let Some(finest) = self.grids.last_mut() {
-            finest.space.pressure(&finest.heights, &mut pressure);
-        }
+        let mut pressure = vec![0.0; self.points()];
+        self.finest.space.pressure(&self.finest.heights, &mut pressure);
         pressure
     }
 
@@ -204,63 +205,70 @@ impl SlidingContact {
         mean_pressure: f64,
     ) -> Result<(ContactSolution, Outcome), ContactError> {
         let points = self.points();
-        let coarsest = &self.grids[0];
+        let coarsest = self.coarser.first().unwrap_or(&self.finest);
         let mut pressure = vec![mean_pressure; coarsest.heights.len()];
         let mut coarser_edges = coarsest.edges.clone();
         let mut applications = 0.0;
-        for grid in &mut self.grids {
-            let finest = grid.heights.len() == points;
-            let goal =
-                if finest { Goal::Solution { tolerance: INNER_TOLERANCE } } else { Goal::Start };
-            let mut contact = Contact {
-                displacement: vec![0.0; grid.heights.len()],
-                pressure: refine(&pressure, &coarser_edges, grid.heights.len()),
-                space: &mut grid.space,
-                heights: &grid.heights,
-                kernel: &grid.kernel,
-                mean_pressure,
-                mean_separation: 0.0,
-                interrupt: &self.interrupt,
-            };
-            let outcome = contact.solve(goal);
+        for grid in &mut self.coarser {
+            let start = refine(&pressure, &coarser_edges, grid.heights.len());
+            let mut contact = grid.contact(start, mean_pressure, &self.interrupt);
+            let outcome = contact.solve(Goal::Start);
             check_interrupt(&self.interrupt)?;
+            pressure = contact.pressure;
             applications += (outcome.applications * grid.heights.len()) as f64 / points as f64;
-            if !finest {
-                pressure = contact.pressure;
-                coarser_edges.clone_from(&grid.edges);
-                continue;
-            }
-            let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
-            let heights = &grid.heights;
-            let slopes = &self.slopes;
-            let edges = &grid.edges;
-            let fields =
-                Fields { mean_pressure, mean_separation, pressure, heights, slopes, edges };
-            let mut solution = fields.evaluate(&mut grid.space);
-            solution.iterations = outcome.iterations;
-            solution.operator_applications = applications;
-            return Ok((solution, outcome));
+            coarser_edges.clone_from(&grid.edges);
         }
-        unreachable!("there is always a finest grid")
+        let start = refine(&pressure, &coarser_edges, points);
+        let mut contact = self.finest.contact(start, mean_pressure, &self.interrupt);
+        let outcome = contact.solve(Goal::Solution { tolerance: INNER_TOLERANCE });
+        check_interrupt(&self.interrupt)?;
+        applications += (outcome.applications * points) as f64 / points as f64;
+        let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
+        let Self { finest, slopes, .. } = self;
+        let Grid { space, heights, edges, .. } = finest;
+        let fields = Fields { mean_pressure, mean_separation, pressure, heights, slopes, edges };
+        let mut solution = fields.evaluate(space);
+        solution.iterations = outcome.iterations;
+        solution.operator_applications = applications;
+        Ok((solution, outcome))
     }
 }
 
 impl Grid {
     fn new(
         planner: &mut RealFftPlanner<f64>,
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: Vec<f64>,
-    ) -> Self {
+    ) -> Result<Self, RubberError> {
         let points = heights.len();
-        let mut space = HalfSpace::new(planner, rubber, speed, period, points);
+        let mut space = HalfSpace::new(planner, rubber, speed, period, points)?;
         let mut unit = vec![0.0; points];
         unit[0] = 1.0;
         let mut kernel = vec![0.0; points];
         space.displacement(&unit, &mut kernel);
         let edges = EdgeReader::new(rubber, speed, period / points as f64);
-        Self { space, heights, kernel, edges }
+        Ok(Self { space, heights, kernel, edges })
+    }
+
+    /// The contact on this grid, to be solved from a `pressure` in Pa.
+    fn contact<'a>(
+        &'a mut self,
+        pressure: Vec<f64>,
+        mean_pressure: f64,
+        interrupt: &'a Interrupt,
+    ) -> Contact<'a> {
+        Contact {
+            displacement: vec![0.0; self.heights.len()],
+            pressure,
+            space: &mut self.space,
+            heights: &self.heights,
+            kernel: &self.kernel,
+            mean_pressure,
+            mean_separation: 0.0,
+            interrupt,
+        }
     }
 }
 
@@ -271,7 +279,7 @@ pub(crate) fn check_interrupt(interrupt: &Interrupt) -> Result<(), ContactError>
 }
 
 pub(crate) fn check(
-    rubber: &Rubber,
+    rubber: &dyn Viscoelastic,
     speed: f64,
     period: f64,
     heights: &[f64],
@@ -296,7 +304,7 @@ pub(crate) fn check(
     }
 }
 
-/// Heights about their mean. One height is taken off first, so that a flat profile becomes zero
+/// Heights about their mean. One height is subtracted first, so that a flat profile becomes zero
 /// and not the round-off of its mean.
 pub(crate) fn remove_mean(heights: &[f64]) -> Vec<f64> {
     let first = heights[0];
@@ -351,6 +359,7 @@ pub fn resample(values: &[f64], points: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rubber::Rubber;
 
     fn heights() -> Vec<f64> {
         (0..64).map(|i| 1e-5 * (0.1 * f64::from(i)).sin()).collect()

@@ -34,7 +34,7 @@ pub struct ContactSolution {
 
 /// Root mean square displacement, the scale of violated gaps; not below 1e-4 of that of the
 /// heights, since their round-off keeps a gap from being any smaller than 1e-15 of them, and not
-/// above it: the round-off of a pressure that dwarfs all displacements must not hide itself.
+/// above it: under a pressure whose round-off exceeds all displacements the residual would otherwise look small.
 pub(crate) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
     let root_mean_square = |x: &[f64]| euclidean_norm(x) / (x.len() as f64).sqrt();
     let height = root_mean_square(heights);
@@ -42,7 +42,7 @@ pub(crate) fn displacement_scale(displacement: &[f64], heights: &[f64]) -> f64 {
     if height > 0.0 { root_mean_square(displacement).clamp(1e-4 * height, height) } else { 1.0 }
 }
 
-/// Fields of a contact before they are judged.
+/// Fields of a contact, to be evaluated.
 pub(super) struct Fields<'a> {
     pub mean_pressure: f64,
     pub mean_separation: f64,
@@ -53,8 +53,7 @@ pub(super) struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Evaluates the fields afresh: nothing is taken over from the iteration but the pressures
-    /// and the mean separation.
+    /// Evaluates the fields afresh: of the iteration only the pressures and the mean separation are used.
     pub fn evaluate(self, space: &mut HalfSpace) -> ContactSolution {
         let n = self.pressure.len();
         let mut displacement = vec![0.0; n];

@@ -1,8 +1,8 @@
-//! What steady contacts cost, in seconds of one thread of the machine of reference.
+//! Cost of steady contacts in seconds of one thread of the reference machine.
 //!
-//! Costs follow from numbers of elements and pressures, never from a clock: shares of work must be the same on
-//! every machine. `multilevel` chooses how many realisations it solves by them, so that a change here asks for
-//! another revision of that stage.
+//! Costs are functions of the numbers of elements and pressures, not measured times, so that work is divided in the
+//! same way on every machine. `multilevel` chooses its numbers of realisations by them: after a change here, raise the
+//! revision of that stage.
 
 use super::profile::RigidProfile;
 use super::steady::has_many_scales;
@@ -15,10 +15,10 @@ const SECONDS_PER_MPA: f64 = 0.33;
 const REFERENCE_COLUMNS: f64 = 128.0;
 /// Power of the columns with which the cost grows.
 const GROWTH: f64 = 1.15;
-/// Half the columns too, for the error by the mesh, cost two fifths more.
+/// Factor if the mesh of half the columns is solved too, for the error by the mesh.
 const WITH_COARSER_MESH: f64 = 1.4;
-/// Profiles of many scales, which grow and whose exact contact climbs from half the columns, that mesh included: eight waves on
-/// 8192 columns at 10 and 50 mm/s.
+/// Profiles of many scales, which grow and whose exact contact climbs from half the columns, that mesh included: eight
+/// waves on 8192 columns at 10 and 50 mm/s.
 const MANY_SCALES: f64 = 1.7;
 /// Memory for a column of the mesh: 17 MB for 128, 37 MB for 256, 1.5 GB for 8192 of them.
 const MEGABYTES_PER_COLUMN: f64 = 0.18;
@@ -35,17 +35,17 @@ pub struct MeshCost {
 }
 
 impl MeshCost {
-    /// Of a profile on so many columns.
+    /// The mesh of a profile with a number of columns.
     pub fn new(profile: &RigidProfile, columns: usize, mesh_error: bool) -> Self {
         Self { columns, many_scales: has_many_scales(profile), mesh_error }
     }
 
-    /// Seconds of so many pressures of a curve.
+    /// Seconds for a number of pressures of a curve.
     pub fn seconds_of_solves(&self, solves: f64) -> f64 {
         SECONDS_PER_SOLVE * self.factor() * solves
     }
 
-    /// Seconds of a microscale that is pressed to so many MPa, with all its samples.
+    /// Seconds for a microscale with all its samples up to a pressure in MPa.
     pub fn seconds_pressed_to(&self, most_pressure_mpa: f64) -> f64 {
         SECONDS_PER_MPA * self.factor() * most_pressure_mpa
     }
@@ -65,7 +65,8 @@ impl MeshCost {
     }
 }
 
-/// Pressures of a curve over these area fractions, about: area grows as pressure does, and one is solved beyond either end.
+/// Approximate number of pressures for a curve over these area fractions: area is about proportional to pressure, and
+/// one pressure is solved beyond either end.
 pub fn solves_of_curve(area_fractions: &[f64], pressure_ratio: f64) -> f64 {
     let range = area_fractions[area_fractions.len() - 1] / area_fractions[0];
     range.ln() / pressure_ratio.ln() + 2.0

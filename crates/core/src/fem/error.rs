@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Why there is no solution to report.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FemError {
-    /// The rubber's numbers are no rubber, or none for finite elements.
+    /// The numbers of the rubber are out of range, in general or for finite elements.
     #[error(transparent)]
     Rubber(#[from] RubberError),
     /// A number outside its range.
@@ -21,13 +21,13 @@ pub enum FemError {
         /// The range it must lie in.
         range: &'static str,
     },
-    /// The path of solutions ended before the wanted pressure.
+    /// The path of solutions ended below the pressure asked for.
     #[error(
         "no finite-deformation solution at {:.4} MPa on {columns} columns: the path ended {}",
         .wanted / 1e6, .reached.describe()
     )]
     PathEnded {
-        /// The wanted mean pressure in Pa.
+        /// The mean pressure asked for, in Pa.
         wanted: f64,
         /// Columns of the mesh.
         columns: usize,
@@ -37,13 +37,13 @@ pub enum FemError {
     /// The user's interrupt.
     #[error("interrupted")]
     Interrupted,
-    /// No pressure was found that gives the wanted contact area.
+    /// No pressure was found that gives the contact area.
     #[error(
         "no pressure gives the contact area fraction {wanted} on {columns} columns: the nearest \
          found is {found} at {:.6} MPa", .pressure / 1e6
     )]
     AreaNotReached {
-        /// The wanted contact area fraction.
+        /// The contact area fraction asked for.
         wanted: f64,
         /// The nearest one found.
         found: f64,

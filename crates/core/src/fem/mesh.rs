@@ -1,4 +1,4 @@
-//! The block's mesh: congruent parallelograms in every row.
+//! The mesh of the block: congruent parallelograms in every row.
 
 /// Displacements, forces and positions of a row of nodes: `(x, z)` of node `j` at `[2 j]`.
 pub type NodeRow = [f64];
@@ -11,7 +11,7 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 pub const POINTS: usize = 5;
 /// The point of the volumetric part.
 pub const CENTRE: usize = 4;
-/// Where the points lie in the unit square.
+/// Coordinates of the points in the unit square.
 pub const PLACES: [(f64, f64); POINTS] = [
     (GAUSS[0], GAUSS[0]),
     (GAUSS[1], GAUSS[0]),

@@ -1,18 +1,18 @@
 //! Rubber at finite deformation on a rigid periodic profile.
 //!
-//! A block of one period, in plane strain, of a neo-Hookean (or linear) spring with Maxwell
-//! branches in finite linear viscoelasticity (thesis, chapters 2 and 4) slides without friction of
-//! its own over the profile; all loss is hysteresis. Two solvers, each the check of the other:
+//! A block of one period, in plane strain, of a neo-Hookean (or linear) spring with Maxwell branches in finite linear
+//! viscoelasticity (thesis, chapters 2 and 4) slides without friction in the contact over the profile; all loss is
+//! hysteresis. Two solvers check each other:
 //!
 //! - [`steady`]: the stationary field in the frame of the profile. One Newton solve a pressure.
-//! - [`transient`]: the thesis' procedure, time steps of a block that is pressed on and dragged.
+//! - [`transient`]: the procedure of the thesis, time steps of a block that is pressed on and dragged.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`profile`] | the rigid profile: height, slope and curvature anywhere |
 //! | [`mesh`] | graded rows of parallelograms, the integration of an element |
-//! | [`unknowns`] | the unknowns of a block whose upper edge moves as a whole |
-//! | [`cost`] | what contacts cost |
+//! | `unknowns` | the unknowns of a block whose upper edge moves as a whole |
+//! | [`cost`] | cost of a contact in seconds and memory |
 //! | [`error`] | what can go wrong |
 //!
 //! Elements are bilinear; their volumetric part is integrated at the centre alone (selective
@@ -25,4 +25,4 @@ pub mod mesh;
 pub mod profile;
 pub mod steady;
 pub mod transient;
-pub mod unknowns;
+mod unknowns;

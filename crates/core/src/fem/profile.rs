@@ -5,7 +5,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Share of the mean square slope that the waves that matter make up.
+/// Fraction of the mean square slope of the waves that count as relevant.
 const SLOPE_SHARE: f64 = 0.99;
 
 /// Height, slope and curvature of the profile at one position.
@@ -19,7 +19,7 @@ pub struct Height {
     pub curvature: f64,
 }
 
-/// A rigid periodic profile `z(x)` that can be read anywhere.
+/// A rigid periodic profile `z(x)` that can be evaluated anywhere.
 #[derive(Debug, Clone)]
 pub struct RigidProfile {
     period: f64,
@@ -28,7 +28,7 @@ pub struct RigidProfile {
 
 #[derive(Debug, Clone)]
 enum Shape {
-    /// A short sum of sines is evaluated as it stands.
+    /// A short sum of sines is evaluated directly.
     Waves(Vec<Wave>),
     /// Many heights become a quintic Hermite interpolant of the trigonometric polynomial.
     Samples(Vec<Height>),
@@ -47,8 +47,8 @@ impl RigidProfile {
         Self { period, shape: Shape::Samples(samples_of(&spectrum_of(heights), period)) }
     }
 
-    /// The profile without its shortest waves: those of up to `whole` waves per period are whole,
-    /// those of up to `growing` are multiplied by `share`, all others are left out.
+    /// The profile without its shortest waves: those of up to `whole` waves per period are kept, those of up to
+    /// `growing` are multiplied by `share`, all others are left out.
     pub fn partial(&self, whole: f64, growing: f64, share: f64) -> Self {
         let part = |waves: f64| {
             // Wavelengths are known to round-off.
@@ -86,8 +86,7 @@ impl RigidProfile {
         self.period
     }
 
-    /// How many of the shortest waves that matter lie on the period: slower ones make up 99 % of the
-    /// mean square slope.
+    /// Number of the shortest relevant waves on the period: this and all longer waves have 99 % of the mean square slope.
     pub fn shortest_waves(&self) -> f64 {
         match &self.shape {
             Shape::Waves(waves) => {
@@ -102,8 +101,8 @@ impl RigidProfile {
         }
     }
 
-    /// As [`Self::shortest_waves`], but sines of next to no slope do not count either: what a mesh
-    /// must resolve.
+    /// As [`Self::shortest_waves`], but sines with nearly zero slope do not count either: the waves that a mesh must
+    /// resolve.
     pub fn steep_waves(&self) -> f64 {
         let Shape::Waves(waves) = &self.shape else { return self.shortest_waves() };
         let mut powers: Vec<(f64, f64)> = waves
@@ -120,7 +119,7 @@ impl RigidProfile {
         steep.map_or(1.0, |(wavelength, _)| (self.period / wavelength).round())
     }
 
-    /// The number of heights that it goes through, if it is not known as sines.
+    /// The number of heights it interpolates; `None` for a sum of sines.
     pub fn samples(&self) -> Option<usize> {
         match &self.shape {
             Shape::Waves(_) => None,
@@ -214,7 +213,7 @@ fn interpolated(samples: &[Height], period: f64, x: f64) -> Height {
     let left = (place as usize).min(n - 1);
     let t = place - left as f64;
     let (a, b) = (samples[left], samples[(left + 1) % n]);
-    // Taylor polynomial from the left plus what it misses at the right end.
+    // Taylor polynomial from the left plus its difference to the values at the right end.
     let (a1, a2) = (a.slope * step, a.curvature * step * step);
     let (b1, b2) = (b.slope * step, b.curvature * step * step);
     let height = b.height - a.height - a1 - 0.5 * a2;

@@ -1,10 +1,9 @@
 //! The unknowns of a block whose upper edge moves as a whole.
 //!
-//! The upper edge moves as a whole in x, so its nodes share one unknown. The rest of the nodes
-//! have their own displacements. In the frame of the profile the field may be displaced along
-//! itself, together with the upper edge, without changing anything; the mean x displacement of
-//! the contact nodes is kept at zero instead of that of the upper edge, so that the contact stays
-//! at the same nodes however far the block shears.
+//! The upper edge moves as a whole in x, so its nodes share one unknown. All other nodes have two unknowns each. A
+//! displacement of the rubber along itself changes nothing in the frame of the profile, so one condition is needed: the
+//! mean x displacement of the contact nodes is zero, not that of the upper edge, so that the contact stays at the same
+//! nodes however far the block shears.
 
 /// Positions of unknowns in a vector: node by node, the upper edge with z only, then the common
 /// x displacement of the upper edge.
@@ -18,13 +17,13 @@ pub struct Unknowns {
 
 impl Unknowns {
     /// Number of unknowns but the common displacement of the upper edge.
-    pub fn own(&self) -> usize {
+    pub fn free(&self) -> usize {
         self.upper_edge() + self.columns
     }
 
     /// Number of unknowns.
     pub fn count(&self) -> usize {
-        self.own() + 1
+        self.free() + 1
     }
 
     /// First unknown of the upper edge.
@@ -33,7 +32,7 @@ impl Unknowns {
     }
 
     /// Unknown of an entry of an array over the nodes; none for x at the upper edge.
-    pub fn of(&self, entry: usize) -> Option<usize> {
+    pub fn index_of(&self, entry: usize) -> Option<usize> {
         let upper = self.upper_edge();
         match entry.checked_sub(upper) {
             None => Some(entry),
@@ -45,15 +44,15 @@ impl Unknowns {
     /// Array over the nodes from the unknowns.
     pub fn expand(&self, unknowns: &[f64]) -> Vec<f64> {
         let upper = self.upper_edge();
-        let common = unknowns[self.own()];
+        let common = unknowns[self.free()];
         let mut nodes = Vec::with_capacity(upper + 2 * self.columns);
         nodes.extend_from_slice(&unknowns[..upper]);
-        nodes.extend(unknowns[upper..self.own()].iter().flat_map(|z| [common, *z]));
+        nodes.extend(unknowns[upper..self.free()].iter().flat_map(|z| [common, *z]));
         nodes
     }
 
-    /// Forces that belong to the unknowns, without the one of the upper edge along x, which is
-    /// what holds the block; in its place stands the mean x displacement of the contact nodes.
+    /// Forces that belong to the unknowns, without the one of the upper edge along x, which holds the block; the mean x
+    /// displacement of the contact nodes takes its place.
     pub fn reduce(&self, forces: &[f64], mean_displacement: f64) -> Vec<f64> {
         let upper = self.upper_edge();
         let mut reduced = Vec::with_capacity(self.count());
@@ -71,12 +70,12 @@ mod tests {
     #[test]
     fn unknowns_leave_out_the_x_displacements_of_the_upper_edge() {
         let unknowns = Unknowns { columns: 3, rows: 2 };
-        assert_eq!((unknowns.own(), unknowns.count()), (15, 16));
+        assert_eq!((unknowns.free(), unknowns.count()), (15, 16));
         let values: Vec<f64> = (0..16).map(f64::from).collect();
         let nodes = unknowns.expand(&values);
         assert_eq!(nodes[12..], [15.0, 12.0, 15.0, 13.0, 15.0, 14.0]);
         for (entry, value) in nodes.iter().enumerate() {
-            assert_eq!(unknowns.of(entry).map_or(15.0, |of| of as f64), *value);
+            assert_eq!(unknowns.index_of(entry).map_or(15.0, |index| index as f64), *value);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What the microscale changes of the friction of a macro contact.
+//! The correction of the friction of a macro contact by the microscale.
 
 use super::LawError;
 use crate::numerics::interpolation::CubicHermite;
@@ -49,8 +49,8 @@ pub struct Correction {
     pub points: MeanFriction,
     /// Change of the contact area fraction.
     pub area: f64,
-    /// Estimated error of the friction at finite deformation by the mesh, weighted with the local pressures; none
-    /// if that of the microscale is not known.
+    /// Estimated error of the friction at finite deformation by the mesh, weighted with the local pressures; `None` if
+    /// that of the microscale is not known.
     pub discretisation_error: Option<f64>,
 }
 
@@ -74,7 +74,7 @@ impl MeanFriction {
         of_all_waves + self.gain(rule, of_all_waves) * self.difference()
     }
 
-    /// What the difference, and so its error, is multiplied with in [`Self::applied`]. Without friction on the
+    /// Factor of the difference, and of its error, in [`Self::applied`]. Without friction on the
     /// half-space, as of a rubber without loss, there is no ratio, and the difference is added.
     pub fn gain(self, rule: CorrectionRule, of_all_waves: f64) -> f64 {
         match rule {
@@ -124,10 +124,10 @@ impl Microscale {
         self
     }
 
-    /// The smallest sampled pressure in Pa. A contact point has at least this pressure: below it
-    /// the mesh of the microscale does not resolve the contact.
-    pub fn smallest_pressure(&self) -> f64 {
-        self.pressures.0
+    /// Whether a point of the macro contact with this local pressure in Pa is a contact point: one with at least
+    /// the smallest sampled pressure, below which the mesh of the microscale does not resolve the contact.
+    pub fn is_contact_point(&self, pressure: f64) -> bool {
+        pressure >= self.pressures.0
     }
 
     /// The largest sampled pressure in Pa.
@@ -148,9 +148,9 @@ impl Microscale {
         sampled.then(|| (self.half_space.at(log), self.finite.at(log)))
     }
 
-    /// The correction under local pressures in Pa on equidistant points. Pressures below the
-    /// smallest sampled one are no contact points; their little force takes the friction of
-    /// the smallest, their area none. `None` if there is no contact point.
+    /// The correction under local pressures in Pa on equidistant points. Of points that are no
+    /// [contact points](Self::is_contact_point) the little force takes the friction of the smallest sampled
+    /// pressure, and the area is left out. `None` if there is no contact point.
     ///
     /// # Errors
     /// [`LawError::BeyondSamples`] for a pressure above the largest sampled one.
@@ -167,7 +167,7 @@ impl Microscale {
             force.add(pressure, friction);
             mesh +=
                 self.discretisation_error.as_ref().map_or(0.0, |error| pressure * error.at(log));
-            if pressure >= smallest {
+            if self.is_contact_point(pressure) {
                 points.add(1.0, friction);
                 area += self.area_change.at(log);
             }
@@ -210,7 +210,7 @@ impl Sums {
 
 /// Local mean pressures: the pressures of a periodic macro grid, averaged over `points` of them
 /// about each. The law and the friction of the microscale belong to a mean over one period of it;
-/// what the macro contact resolves below that means nothing.
+/// pressures that the macro contact resolves below that length have no meaning for it.
 pub fn running_mean(pressures: &[f64], points: usize) -> Vec<f64> {
     let n = pressures.len();
     let points = points.clamp(1, n);

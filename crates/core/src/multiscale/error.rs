@@ -3,10 +3,10 @@
 use crate::contact::ContactError;
 use crate::error_kind::{ErrorKind, HasKind};
 
-/// Why samples are no local law, or why a law gives no answer.
+/// Errors of samples that make no local law, and of a law outside its samples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LawError {
-    /// Not as many pressures as separations, or none.
+    /// Different numbers of pressures and separations, or none at all.
     #[error(
         "the local law has {pressures} pressures and {separations} separations: it takes equally \
          many, at least one"
@@ -17,7 +17,7 @@ pub enum LawError {
         /// Number of separations.
         separations: usize,
     },
-    /// The separation at first touch is no number.
+    /// The separation at first touch is not a number.
     #[error("the separation at first touch is {value} m, it must be finite")]
     Touch {
         /// Its value in m.
@@ -61,7 +61,7 @@ pub enum LawError {
         /// The largest sampled pressure in Pa.
         largest: f64,
     },
-    /// A pressure below zero or none at all.
+    /// A pressure below zero, or not a number.
     #[error("the local law was asked for {pressure} Pa, pressures are not negative")]
     NotAPressure {
         /// The pressure asked for in Pa.

@@ -74,8 +74,8 @@ impl LocalLaw {
         let logarithms = |values: &[f64]| values.iter().map(|x| x.ln()).collect::<Vec<f64>>();
         let mut logarithm =
             CubicHermite::monotone_parabolas(logarithms(pressures), logarithms(&indentations));
-        // A single sample has no slope of its own: the law is a straight line to it. A slope that
-        // is one but for round-off is one, or the slope at zero pressure would be infinite.
+        // A single sample has no slope: the law is a straight line to it. A slope of one to round-off counts as one, or
+        // the slope at zero pressure would be infinite.
         let first_slope = match logarithm.derivative(pressures[0].ln()) {
             m if pressures.len() == 1 || (m - 1.0).abs() < 1e-9 => 1.0,
             m => m,
@@ -144,17 +144,16 @@ impl LocalLaw {
         self.samples[self.samples.len() - 1]
     }
 
-    /// Indentation from the first sample to the last, reckoned from the sample before it: the
-    /// round-off of the logarithms themselves, 1e-14 of the indentation, is more than a solution
-    /// may lack where the law is 1e4 times deeper than the profile.
+    /// Indentation from the first sample to the last, computed from the sample before it: the round-off of the
+    /// logarithms themselves, 1e-14 of the indentation, would exceed the tolerance of a solution where the law is 1e4
+    /// times deeper than the profile.
     fn between_samples(&self, pressure: f64) -> f64 {
         let piece = self.samples.partition_point(|s| s.pressure <= pressure) - 1;
         let from = self.samples[piece];
         from.indentation * self.logarithm.rise(piece, (pressure / from.pressure).ln()).exp()
     }
 
-    /// `g(0) - g(p)` in m; beyond the samples of a law in partial contact the last value, which
-    /// serves an iteration on its way and no result.
+    /// `g(0) - g(p)` in m; beyond the samples of a law in partial contact the last value, for intermediate iterations only.
     pub(super) fn indentation(&self, pressure: f64) -> f64 {
         if pressure >= self.last().pressure {
             self.last().indentation
@@ -205,7 +204,7 @@ impl LocalLaw {
             return LawPoint { pressure, indentation: self.last().indentation, compliance: 0.0 };
         }
         let pressure = self.pressure_on_line(c, s, guess);
-        // The larger part comes from the line, so that neither is a difference of equals.
+        // The larger part is computed from the line, so that neither is a difference of nearly equal numbers.
         let indentation = self.indentation(pressure);
         LawPoint { pressure, indentation, compliance: self.compliance(pressure) }
     }

@@ -5,7 +5,7 @@ use crate::contact::preconditioner::SetOperator;
 
 /// Displacement of the half-space plus `K_i p_i` on the points of a contact set.
 ///
-/// Its inverse within an island is a filter by `1 / (C(q) + K)`. Where `K` varies from point to
+/// Its inverse within a patch is a filter by `1 / (C(q) + K)`. Where `K` varies from point to
 /// point, that filter is blended from a few with fixed `K`: exact for a uniform layer, and good
 /// where the layer varies slowly against the waves at which the two terms are equal.
 pub(super) struct LayeredSpace<'a> {
@@ -20,14 +20,14 @@ pub(super) struct LayeredSpace<'a> {
 /// Levels of a blend, and the ratio of neighbouring ones as long as these suffice.
 const MOST_LEVELS: usize = 6;
 const RATIO: f64 = 6.0;
-/// A relative spread of compliances below this is none: on equal peaks it is round-off, and two
+/// Compliances that differ by less, relative, count as equal: on equal peaks the difference is round-off, and two
 /// levels that differ by it have no blend.
 const UNIFORM: f64 = 1e-9;
 
 impl<'a> LayeredSpace<'a> {
     /// Operator for the compliances at the points of a nonempty set.
     pub fn new(space: &'a mut HalfSpace, compliance: &'a [f64]) -> Self {
-        // To no wave of the grid a layer much thinner than the shortest differs from none.
+        // A layer much less compliant than the shortest wave of the grid has no effect on any wave.
         let shortest = space.compliance_range().1;
         let total = |k: &f64| k + shortest;
         let smallest = compliance.iter().map(total).fold(f64::INFINITY, f64::min);

@@ -2,7 +2,7 @@
 
 use crate::surface::{SineScale, Wave};
 
-/// A profile taken apart.
+/// A profile divided into two scales.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scales {
     /// Waves with a root mean square slope above the threshold.
@@ -17,8 +17,8 @@ fn rms_slope(wave: &Wave) -> f64 {
 }
 
 impl Scales {
-    /// Parts the waves at an rms slope. A single micro wave has no phase of its own: it is set to
-    /// zero, so that all realisations share it.
+    /// Divides the waves at an rms slope. The phase of a single micro wave does not matter: it is set to zero, so that
+    /// all realisations share it.
     pub fn part(waves: &[Wave], threshold: f64) -> Self {
         let present = waves.iter().filter(|wave| wave.amplitude != 0.0);
         let (mut micro, macroscale): (Vec<Wave>, Vec<Wave>) =
@@ -33,15 +33,17 @@ impl Scales {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::surface::TABLE_3_1_MM;
 
     #[test]
     fn steep_waves_are_the_microscale() {
         let wave = |wavelength, amplitude, phase| Wave { wavelength, amplitude, phase };
+        let [first, second, third, (fourth, _), ..] = TABLE_3_1_MM;
         let waves = [
-            wave(0.0625, 0.01867, 1.0),
-            wave(0.125, 0.02648, 2.0),
-            wave(0.25, 0.02939, 3.0),
-            wave(0.5, 0.0, 4.0),
+            wave(first.0, first.1, 1.0),
+            wave(second.0, second.1, 2.0),
+            wave(third.0, third.1, 3.0),
+            wave(fourth, 0.0, 4.0),
         ];
         // Slopes of Table 3.1; the second is 0.1 % below what its amplitude gives.
         for (wave, published) in waves.iter().zip([1.3275, 0.9403, 0.5223]) {

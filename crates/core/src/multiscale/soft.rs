@@ -11,18 +11,18 @@ use crate::contact::sliding::{
     remove_mean, resample,
 };
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberError, Viscoelastic};
 use realfft::RealFftPlanner;
 
-/// Residual below which a coarser grid has done its duty.
+/// Residual at which the iteration on a coarser grid ends.
 const START_TOLERANCE: f64 = 1e-4;
 /// Factor from one softened law to the next harder one, and their number; the last step is to
 /// the law itself.
 const SOFTENING_FACTOR: f64 = 0.2;
 const SOFTENED_LAWS: usize = 12;
 
-/// A rubber half-space that slides at constant speed over the long waves of a rigid profile, the
-/// short waves of which answer by a [`LocalLaw`].
+/// A rubber half-space that slides at constant speed over the long waves of a rigid profile, whose short waves are
+/// represented by a [`LocalLaw`].
 ///
 /// Operators and transforms are kept. Every solve starts from scratch on the coarsest grid: its
 /// result does not depend on what was solved before.
@@ -45,8 +45,9 @@ const SOFTENED_LAWS: usize = 12;
 pub struct SoftContact {
     speed: f64,
     law: LocalLaw,
-    /// From the coarsest to the finest.
-    grids: Vec<Grid>,
+    /// Grids that a solve starts on, the coarsest first.
+    coarser: Vec<Grid>,
+    finest: Grid,
     slopes: Vec<f64>,
     interrupt: Interrupt,
 }
@@ -64,7 +65,7 @@ impl SoftContact {
     /// # Errors
     /// As [`crate::contact::SlidingContact::new`].
     pub fn new(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -78,7 +79,7 @@ impl SoftContact {
     /// # Errors
     /// As [`crate::contact::SlidingContact::new_interruptible`].
     pub fn new_interruptible(
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: &[f64],
@@ -89,17 +90,19 @@ impl SoftContact {
         let mut planner = RealFftPlanner::new();
         let mut grid = |heights| -> Result<Grid, SoftContactError> {
             check_interrupt(interrupt)?;
-            Ok(Grid::new(&mut planner, rubber, speed, period, heights))
+            Ok(Grid::new(&mut planner, rubber, speed, period, heights)
+                .map_err(ContactError::Rubber)?)
         };
-        let mut grids = vec![grid(remove_mean(heights))?];
-        while grids[grids.len() - 1].heights.len() >= 2 * COARSEST_POINTS {
-            let coarser = coarsen(&grids[grids.len() - 1].heights);
-            grids.push(grid(coarser)?);
+        let mut finest = grid(remove_mean(heights))?;
+        let mut coarser = Vec::new();
+        let mut coarsest = &finest.heights;
+        while coarsest.len() >= 2 * COARSEST_POINTS {
+            coarser.push(grid(coarsen(coarsest))?);
+            coarsest = coarser.last().map_or(&finest.heights, |grid: &Grid| &grid.heights);
         }
-        let finest = &mut grids[0];
+        coarser.reverse();
         let slopes = finest.space.slope(&finest.heights);
-        grids.reverse();
-        Ok(Self { speed, law, grids, slopes, interrupt: interrupt.clone() })
+        Ok(Self { speed, law, coarser, finest, slopes, interrupt: interrupt.clone() })
     }
 
     /// Number of points of the finest grid.
@@ -128,31 +131,27 @@ impl SoftContact {
             }));
         }
         let points = self.points();
-        let mut coarser: Option<(State, f64)> = None;
+        let mut known: Option<(State, f64)> = None;
         let mut applications = 0.0;
-        for level in 0..self.grids.len() {
-            let tolerance =
-                if level + 1 == self.grids.len() { INNER_TOLERANCE } else { START_TOLERANCE };
-            let mut newton = self.grids[level].newton(&self.law, mean_pressure, &self.interrupt);
-            let n = newton.heights.len();
-            let mut state = match coarser.take() {
-                Some((state, compliance)) => refine(&newton, &state, compliance),
-                None => flat_start(&newton),
-            };
-            let (outcome, softened) = solve_grid(&mut newton, &mut state, tolerance);
+        for grid in &mut self.coarser {
+            let n = grid.heights.len();
+            let mut newton = grid.newton(&self.law, mean_pressure, &self.interrupt);
+            let mut state = start(&newton, known.take());
+            let (outcome, _) = solve_grid(&mut newton, &mut state, START_TOLERANCE);
             check_interrupt(&self.interrupt)?;
             applications += (outcome.krylov_iterations * n) as f64 / points as f64;
-            if n < points {
-                coarser = Some((state, newton.coordinate_compliance()));
-                continue;
-            }
-            let mut solution = self.judge(mean_pressure, state)?;
-            solution.iterations = outcome.iterations;
-            solution.operator_applications = applications;
-            solution.softened = softened;
-            return self.accept(solution);
+            known = Some((state, newton.coordinate_compliance()));
         }
-        unreachable!("there is always a finest grid")
+        let mut newton = self.finest.newton(&self.law, mean_pressure, &self.interrupt);
+        let mut state = start(&newton, known);
+        let (outcome, softened) = solve_grid(&mut newton, &mut state, INNER_TOLERANCE);
+        check_interrupt(&self.interrupt)?;
+        applications += (outcome.krylov_iterations * points) as f64 / points as f64;
+        let mut solution = self.judge(mean_pressure, state)?;
+        solution.iterations = outcome.iterations;
+        solution.operator_applications = applications;
+        solution.softened = softened;
+        self.accept(solution)
     }
 
     fn judge(
@@ -160,8 +159,7 @@ impl SoftContact {
         mean_pressure: f64,
         state: State,
     ) -> Result<SoftContactSolution, SoftContactError> {
-        let finest = self.grids.len() - 1;
-        let grid = &mut self.grids[finest];
+        let grid = &mut self.finest;
         let fields = Fields {
             mean_pressure,
             approach: state.approach,
@@ -195,18 +193,18 @@ impl SoftContact {
 impl Grid {
     fn new(
         planner: &mut RealFftPlanner<f64>,
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         period: f64,
         heights: Vec<f64>,
-    ) -> Self {
+    ) -> Result<Self, RubberError> {
         let points = heights.len();
-        let mut space = HalfSpace::new(planner, rubber, speed, period, points);
+        let mut space = HalfSpace::new(planner, rubber, speed, period, points)?;
         let mut unit = vec![0.0; points];
         unit[0] = 1.0;
         let mut kernel = vec![0.0; points];
         space.displacement(&unit, &mut kernel);
-        Self { space, heights, kernel }
+        Ok(Self { space, heights, kernel })
     }
 
     fn newton<'a>(
@@ -228,8 +226,8 @@ impl Grid {
     }
 }
 
-/// Solves on one grid: at once, or, where that does not settle, over softened laws from one that
-/// is softer than the half-space, each started from the last.
+/// Solves on one grid: directly, or if that does not converge by a sequence of softened laws from one softer than the
+/// half-space, each started from the last.
 fn solve_grid(newton: &mut Newton, state: &mut State, tolerance: f64) -> (Outcome, bool) {
     let mut total = newton.solve(state, tolerance);
     if total.converged {
@@ -254,6 +252,14 @@ fn solve_grid(newton: &mut Newton, state: &mut State, tolerance: f64) -> (Outcom
         }
     }
     (total, true)
+}
+
+/// The state that a grid starts from: that of the coarser grid with its compliance, or the mean pressure.
+fn start(newton: &Newton, coarser: Option<(State, f64)>) -> State {
+    match coarser {
+        Some((state, compliance)) => refine(newton, &state, compliance),
+        None => flat_start(newton),
+    }
 }
 
 /// The mean pressure everywhere.

@@ -1,4 +1,4 @@
-//! A solved contact under a local law and what is read from it.
+//! A solved contact under a local law and the quantities read from it.
 
 use super::error::LawError;
 use super::law::LocalLaw;
@@ -11,17 +11,17 @@ pub struct SoftContactSolution {
     /// Mean pressure p in Pa.
     pub mean_pressure: f64,
     /// Friction coefficient of the macro slopes, `mean(p z') / mean(p)`; positive where it opposes
-    /// the motion. What the microscale adds is not in it.
+    /// the motion. Without the contribution of the microscale.
     pub friction_coefficient: f64,
     /// The same from the hysteretic power of the pressure spectrum. On the converged grid the two
     /// are equal, since a local law that is a function of the pressure stores and returns its
-    /// work; the difference measures the grid.
+    /// work; the difference measures the error by the grid.
     pub hysteretic_friction: f64,
     /// Mean separation ubar in m: of the mean planes of rubber and profile.
     pub mean_separation: f64,
     /// Number of grid points with `p > 0`.
     pub contact_points: usize,
-    /// Largest violation, relative: of `gap = g(p)` in contact and `gap >= g(0)` outside by the
+    /// Largest violation, relative: of `u = g(p)` in contact and `u >= g(0)` outside, with the separation u, by the
     /// root mean square displacement (or 1e-4 of that of the heights, of the largest indentation or
     /// of the displacement by the mean pressure as the longest wave, if that is more: their
     /// round-off counts there), of the load by the mean pressure.
@@ -30,15 +30,15 @@ pub struct SoftContactSolution {
     pub iterations: usize,
     /// Applications of the operator by the linear solver, all grids, in units of the finest one.
     pub operator_applications: f64,
-    /// Whether the way led over softened laws.
+    /// Whether softened laws were needed.
     pub softened: bool,
     /// Local pressures in Pa at the grid points.
     pub pressure: Vec<f64>,
-    /// Gaps `ubar + w - z` in m at the grid points.
-    pub gap: Vec<f64>,
+    /// Separations `ubar + w - z` in m at the grid points.
+    pub separation: Vec<f64>,
 }
 
-/// Fields of a contact before they are judged.
+/// Fields of a contact, to be evaluated.
 pub(super) struct Fields<'a> {
     pub mean_pressure: f64,
     /// Approach of the mean planes from first touch in m: the mean separation would round it off
@@ -51,8 +51,7 @@ pub(super) struct Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// Evaluates the fields afresh: nothing is taken over from the iteration but the pressures
-    /// and the approach.
+    /// Evaluates the fields afresh: of the iteration only the pressures and the approach are used.
     ///
     /// # Errors
     /// The law's, where a pressure lies beyond its samples.
@@ -78,7 +77,7 @@ impl Fields<'_> {
             space.compliance_range().0 * self.mean_pressure,
         );
         let gap_violation = violation.fold(0.0_f64, f64::max) / scale;
-        let gap =
+        let separation =
             displacement.iter().zip(self.heights).map(|(w, z)| mean_separation + w - z).collect();
         let mean = self.pressure.iter().sum::<f64>() / n;
         let traction =
@@ -95,7 +94,7 @@ impl Fields<'_> {
             operator_applications: 0.0,
             softened: false,
             pressure: self.pressure,
-            gap,
+            separation,
         })
     }
 }

@@ -9,8 +9,8 @@ pub struct End {
     pub error: f64,
 }
 
-/// Replaces the end of the bracket on the side of `new`. Where this happens twice running (`again`)
-/// the error of the other end is scaled down, so that it does not stay for ever.
+/// Replaces the end of the bracket on the side of `new`. If the same end is replaced twice in succession (`again`), the
+/// error of the other end is scaled down, so that it moves too.
 pub fn narrow(lower: &mut End, upper: &mut End, new: End, again: bool) {
     let (near, far) = if new.error > 0.0 { (upper, lower) } else { (lower, upper) };
     if again {
@@ -20,7 +20,7 @@ pub fn narrow(lower: &mut End, upper: &mut End, new: End, again: bool) {
     *near = new;
 }
 
-/// Where the line through the ends vanishes, kept off the ends by a thousandth of the bracket.
+/// Zero of the line through the ends, at least a thousandth of the bracket away from them.
 pub fn secant(lower: &End, upper: &End) -> f64 {
     let share = lower.error / (lower.error - upper.error);
     let share = if share.is_finite() { share.clamp(1e-3, 1.0 - 1e-3) } else { 0.5 };

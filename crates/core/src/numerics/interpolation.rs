@@ -5,7 +5,7 @@
 pub struct CubicHermite {
     x: Vec<f64>,
     y: Vec<f64>,
-    /// Slopes at the points; none for straight lines.
+    /// Slopes at the points; `None` for straight lines.
     slope: Option<Vec<f64>>,
 }
 
@@ -102,8 +102,8 @@ impl CubicHermite {
             + t * (3.0 * t - 2.0) * slope[i + 1]
     }
 
-    /// Value at `offset` beyond the point `piece` less the value there, which keeps small rises of
-    /// large values to the last digit; beyond the last point zero.
+    /// Value at `offset` beyond the point `piece` less the value there, which keeps all digits of small rises of large
+    /// values; beyond the last point zero.
     pub fn rise(&self, piece: usize, offset: f64) -> f64 {
         if piece + 1 >= self.x.len() {
             return 0.0;
@@ -118,7 +118,7 @@ impl CubicHermite {
             + (1.0 - t) * step * ((1.0 - t) * slope[piece] - t * slope[piece + 1]))
     }
 
-    /// Value at `x`; beyond the ends the value of the end, since extrapolation is no data.
+    /// Value at `x`; beyond the ends the value at the nearer end: nothing is extrapolated.
     pub fn at(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
         if x <= self.x[0] {

@@ -1,9 +1,9 @@
-//! The wish of a user to stop a long computation.
+//! A flag by which a user stops a long computation.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A wish to stop, which long computations look at between their iterations; clones share it.
+/// A flag that long computations check between their iterations; clones share it.
 ///
 /// The default is never set unless a clone of it is.
 #[derive(Debug, Clone, Default)]

@@ -20,15 +20,15 @@ pub struct KrylovReport {
     pub residual_norm: f64,
 }
 
-/// A new direction smaller than this, relative, is round-off: the Krylov space is exhausted, and
-/// what would come next need not even lie in the range of the operator.
+/// A new direction smaller than this, relative, is round-off: the Krylov space is exhausted, and further directions
+/// need not even be in the range of the operator.
 const EXHAUSTED: f64 = 1e-13;
 
 /// Minimises `|r - B y|` over the Krylov space of `B` and `r` (GMRES without restart, modified
 /// Gram-Schmidt; Saad & Schultz 1986, doi:10.1137/0907058) and returns `y` in place of `r`.
 ///
-/// `B` is meant to be a preconditioned operator close to the identity: the basis is kept
-/// whole, so memory is `(iterations + 1) * r.len()`. After an `interrupt` the best solution so far is returned.
+/// `B` is meant to be a preconditioned operator close to the identity: the complete basis is kept, so memory is
+/// `(iterations + 1) * r.len()`. After an `interrupt` the best solution so far is returned.
 pub fn gmres(
     mut operator: impl FnMut(&[f64], &mut [f64]),
     residual: &mut [f64],
@@ -112,7 +112,7 @@ impl KrylovSpace {
         &self.basis[self.columns.len()]
     }
 
-    /// Takes in the image of what belongs to the last vector.
+    /// Adds the image of the last vector.
     fn extend(&mut self, mut w: Vec<f64>) {
         let k = self.columns.len();
         let before = euclidean_norm(&w);
@@ -143,7 +143,7 @@ impl KrylovSpace {
         }
     }
 
-    /// Those of the vectors that minimise the residual.
+    /// Coefficients of the vectors that minimise the residual.
     fn coefficients(&self) -> Vec<f64> {
         back_substitute(&self.columns, &self.rhs)
     }

@@ -1,4 +1,13 @@
 //! Mathematics without physics and without files.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`bracket`] | the root of a growing function |
+//! | [`direct`] | sparse LU factors of blocks of two unknowns a node, by nested dissection |
+//! | [`interpolation`] | cubic Hermite interpolants |
+//! | [`interrupt`] | a flag by which a user stops a long computation |
+//! | [`krylov`] | GMRES for matrix-free, nonsymmetric systems |
+//! | [`statistics`] | means, spreads and confidence intervals of small samples, lines through points |
 
 pub mod bracket;
 pub mod direct;
@@ -9,5 +18,5 @@ pub mod statistics;
 
 pub use interrupt::Interrupt;
 
-/// Complex numbers of public functions, so that a user needs no version of their own.
+/// Complex numbers of public functions, so that a user need not depend on the same version.
 pub use rustfft::num_complex::Complex64;

@@ -31,9 +31,9 @@ impl MeanEstimate {
         Self { mean, standard_deviation, confidence_95, count }
     }
 
-    /// How many values of this spread have a mean whose 95 % confidence interval is at most as wide as
-    /// `half_width` to each side: the smallest `n` with `t(n - 1) s <= half_width sqrt(n)`. None for a
-    /// half width that is not positive, or a spread that is not known.
+    /// How many values of this spread have a mean whose 95 % confidence interval is at most as wide as `half_width` to
+    /// each side: the smallest `n` with `t(n - 1) s <= half_width sqrt(n)`. `None` for a half width that is not
+    /// positive, or an unknown spread.
     pub fn count_for(&self, half_width: f64) -> Option<usize> {
         let ratio = self.standard_deviation / half_width;
         if !(half_width > 0.0 && ratio.is_finite()) {
@@ -41,7 +41,7 @@ impl MeanEstimate {
         }
         let is_enough =
             |count: usize| student_t_975(count as f64 - 1.0) * ratio <= (count as f64).sqrt();
-        // Doubled until it will do, then halved in between: a step at a time would take as many as the number has.
+        // Doubled until it suffices, then bisected: unit steps would take as many steps as the number itself.
         let mut enough = 2;
         while !is_enough(enough) {
             enough = enough.checked_mul(2)?;
@@ -88,8 +88,8 @@ pub fn student_t_975(degrees_of_freedom: f64) -> f64 {
     const MANY: f64 = 1e3;
     const NORMAL: f64 = 1.959_963_984_540_054;
     if degrees_of_freedom >= MANY {
-        // Abramowitz & Stegun 26.7.5, of which the next term is below 1e-11. The library loses digits there, and
-        // does not end on the largest numbers.
+        // Abramowitz & Stegun 26.7.5, of which the next term is below 1e-11. The library loses digits there, and does
+        // not terminate for the largest numbers.
         let (z2, n) = (NORMAL * NORMAL, degrees_of_freedom);
         let first = (z2 + 1.0) / 4.0;
         let second = ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
@@ -147,7 +147,7 @@ mod tests {
     fn the_count_for_a_half_width_is_the_smallest_that_has_it() {
         let values = [1.0, 2.0, 3.0, 4.0, 5.0];
         let estimate = MeanEstimate::of(&values);
-        // Of five values the interval is what it is; a bit less takes six.
+        // Five values have this interval; a slightly smaller one takes six.
         assert_eq!(estimate.count_for(estimate.confidence_95 * 1.0001), Some(5));
         assert_eq!(estimate.count_for(estimate.confidence_95 * 0.9999), Some(6));
         // Of many, (1.96 s / w)^2 = 9604 * 2.5.

@@ -4,9 +4,9 @@ use crate::rubber::Rubber;
 use crate::surface::SineScale;
 use std::f64::consts::{PI, TAU};
 
-/// A viscoelastic half-plane that slides at constant speed in full contact with a rigid sine wave:
-/// one frequency `ω = q v`, `q = 2 π / λ`, so the complex modulus there says everything
-/// (thesis 2.2.5-6 with the half-plane's compliance `2 / (q E_r)`).
+/// A viscoelastic half-plane that slides at constant speed in full contact with a rigid sine wave: one frequency
+/// `ω = q v`, `q = 2 π / λ`, so only the complex modulus there matters (thesis 2.2.5-6 with the half-plane's compliance
+/// `2 / (q E_r)`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FullContact<'a> {
     /// The rubber.

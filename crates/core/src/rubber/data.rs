@@ -1,8 +1,8 @@
-//! A rubber with what is known of its measurement.
+//! A rubber with the range of its measurement.
 
 use super::{FrequencyRange, Rubber, TemperatureDependence, TemperatureError};
 
-/// A rubber with what is known of its measurement.
+/// A rubber with the range of its measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RubberData {
     /// The rubber at the reference temperature, or at the one it was shifted to.
@@ -20,8 +20,8 @@ impl From<Rubber> for RubberData {
 }
 
 impl RubberData {
-    /// Warnings of what is extrapolated from the measurement where a surface excites frequencies: the
-    /// moduli at these, and the shift to the temperature.
+    /// Warnings where the moduli at the frequencies excited by a surface, or the shift to the temperature, are
+    /// extrapolated from the measurement.
     pub fn extrapolations(&self, excited: Option<FrequencyRange>) -> Vec<String> {
         let temperature = self.temperature.and_then(|dependence| dependence.extrapolation());
         let range = self.measured.zip(excited);

@@ -32,15 +32,30 @@ impl FrequencyRange {
         Self { lowest_hz: self.lowest_hz / factor, highest_hz: self.highest_hz / factor }
     }
 
+    /// The lowest frequency of another range if this one begins above it, otherwise the highest one if this one ends
+    /// below it, in Hz.
+    pub fn first_outside(&self, other: Self) -> Option<f64> {
+        match self.exceeded_by(other) {
+            [true, _] => Some(other.lowest_hz),
+            [false, true] => Some(other.highest_hz),
+            [false, false] => None,
+        }
+    }
+
+    /// Whether another range begins below this one, and whether it ends above it.
+    fn exceeded_by(&self, other: Self) -> [bool; 2] {
+        let below = other.lowest_hz < self.lowest_hz * (1.0 - ROUNDING);
+        let above = other.highest_hz > self.highest_hz * (1.0 + ROUNDING);
+        [below, above]
+    }
+
     /// A warning where a surface excites frequencies outside this measured range.
     pub fn extrapolation(&self, excited: Self) -> Option<String> {
-        let below = excited.lowest_hz < self.lowest_hz * (1.0 - ROUNDING);
-        let above = excited.highest_hz > self.highest_hz * (1.0 + ROUNDING);
-        let side = match (below, above) {
-            (false, false) => return None,
-            (true, false) => "below",
-            (false, true) => "above",
-            (true, true) => "below and above",
+        let side = match self.exceeded_by(excited) {
+            [false, false] => return None,
+            [true, false] => "below",
+            [false, true] => "above",
+            [true, true] => "below and above",
         };
         Some(format!(
             "the waves of the surface excite the rubber from {:.3e} to {:.3e} Hz, it was measured from {:.3e} to \

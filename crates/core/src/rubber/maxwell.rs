@@ -1,5 +1,6 @@
 //! Generalised Maxwell model of a linear viscoelastic solid.
 
+use super::{FrequencyRange, Viscoelastic};
 use crate::error_kind::{ErrorKind, HasKind};
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -29,7 +30,7 @@ pub struct Rubber {
     pub poisson_ratio: f64,
 }
 
-/// Why a set of numbers is not a rubber.
+/// Errors of the numbers of a rubber.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RubberError {
     /// A modulus or time that is not positive and finite.
@@ -62,14 +63,52 @@ pub enum RubberError {
         /// The largest value it takes.
         limit: f64,
     },
+    /// Measured moduli at fewer than two frequencies.
+    #[error("rubber {rubber} has moduli at {points} point(s), it needs at least two")]
+    TooFewPoints {
+        /// Name of the rubber.
+        rubber: String,
+        /// How many there are.
+        points: usize,
+    },
+    /// Measured frequencies out of order.
+    #[error(
+        "rubber {rubber}: the frequency {frequency_hz:e} Hz comes after {before_hz:e} Hz, frequencies must ascend"
+    )]
+    NotAscending {
+        /// Name of the rubber.
+        rubber: String,
+        /// The frequency in Hz.
+        frequency_hz: f64,
+        /// The one before it in Hz.
+        before_hz: f64,
+    },
+    /// A modulus outside the measured frequencies.
+    #[error(
+        "the modulus of rubber {rubber} is not known at {frequency_hz:.3e} Hz: it was measured from {:.3e} to {:.3e} \
+         Hz; measure it there (at another temperature), or choose a speed and waves within that range",
+        .measured.lowest_hz,
+        .measured.highest_hz
+    )]
+    NotMeasured {
+        /// Name of the rubber.
+        rubber: String,
+        /// The frequency asked for in Hz.
+        frequency_hz: f64,
+        /// The measured frequencies.
+        measured: FrequencyRange,
+    },
 }
 
 impl HasKind for RubberError {
     fn kind(&self) -> ErrorKind {
         match self {
-            Self::NotPositive { .. } | Self::PoissonRatio { .. } | Self::NotCompressible { .. } => {
-                ErrorKind::Input
-            }
+            Self::NotPositive { .. }
+            | Self::PoissonRatio { .. }
+            | Self::NotCompressible { .. }
+            | Self::TooFewPoints { .. }
+            | Self::NotAscending { .. }
+            | Self::NotMeasured { .. } => ErrorKind::Input,
         }
     }
 }
@@ -168,5 +207,23 @@ impl Rubber {
     /// Glassy modulus `E_inf + Σ E_k` in Pa, the limit of infinite frequency.
     pub fn glassy_modulus(&self) -> f64 {
         self.equilibrium_modulus + self.branches.iter().map(|b| b.modulus).sum::<f64>()
+    }
+}
+
+impl Viscoelastic for Rubber {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn complex_modulus(&self, angular_frequency: f64) -> Complex64 {
+        Self::complex_modulus(self, angular_frequency)
+    }
+
+    fn poisson_ratio(&self) -> f64 {
+        self.poisson_ratio
+    }
+
+    fn validate(&self) -> Result<(), RubberError> {
+        Self::validate(self)
     }
 }

@@ -1,4 +1,4 @@
-//! What in a rubber file is allowed and still looks like a mistake.
+//! Warnings of numbers of a rubber that are allowed but look like a mistake.
 
 use super::{MaxwellBranch, RubberData};
 
@@ -10,7 +10,7 @@ const SOFTEST: f64 = 1e2;
 const SLOWEST: f64 = 1e13;
 
 impl RubberData {
-    /// Warnings of numbers that no rubber has, as they stand in the file, with what to do.
+    /// Warnings of numbers that no rubber has, as written in the file, with what to do.
     pub fn oddities(&self) -> Vec<String> {
         let rubber = &self.rubber;
         let name = &rubber.name;

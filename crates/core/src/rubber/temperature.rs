@@ -10,7 +10,7 @@ use serde::Serialize;
 pub const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 /// 0 °C in K.
 pub const ZERO_CELSIUS: f64 = 273.15;
-/// No rubber is measured or used hotter throughout, in °C; but in K it would be.
+/// Highest temperature in °C at which rubber is measured or used; larger numbers are likely in K.
 pub const HOTTEST_C: f64 = 150.0;
 
 /// How the shift factor depends on temperature; 1 at the reference temperature T_r.
@@ -46,7 +46,7 @@ pub struct TemperatureDependence {
     pub vertical: Option<VerticalShift>,
 }
 
-/// Why there are no moduli at a temperature.
+/// Errors of moduli at a temperature.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TemperatureError {
     /// The rubber has no law.
@@ -59,7 +59,7 @@ pub enum TemperatureError {
         /// Name of the rubber.
         rubber: String,
     },
-    /// Below absolute zero, or no number.
+    /// Below absolute zero, or not a number.
     #[error("the temperature {temperature_c} °C is not above absolute zero, -273.15 °C")]
     NoTemperature {
         /// The temperature in °C.
@@ -107,9 +107,9 @@ pub enum TemperatureError {
         /// What it may be.
         range: &'static str,
     },
-    /// A measured range that is none.
+    /// A measured range whose lowest temperature is not below the highest.
     #[error(
-        "temperature.measured_c is [{}, {}], wanted are the lowest and the highest temperature",
+        "temperature.measured_c is [{}, {}], it must be the lowest and the highest temperature",
         .range[0],
         .range[1]
     )]
@@ -133,7 +133,7 @@ impl HasKind for TemperatureError {
     }
 }
 
-/// More decades than between creep over years and vibrations of molecules.
+/// Largest shift in decades: more than from creep over years to vibrations of molecules.
 const MOST_DECADES: f64 = 60.0;
 
 impl ShiftLaw {
@@ -166,7 +166,7 @@ impl TemperatureDependence {
     /// Checks temperatures and coefficients.
     ///
     /// # Errors
-    /// The first number that is none of a law.
+    /// The first number that is out of range.
     pub fn validate(&self) -> Result<(), TemperatureError> {
         above_zero(self.reference_c)?;
         let coefficients = match self.law {
@@ -195,7 +195,7 @@ impl TemperatureDependence {
     /// reference: `E(ω, T) = E(a_T ω, T_r)`.
     ///
     /// # Errors
-    /// A temperature at which the law has none.
+    /// A temperature at which the law has no shift factor.
     pub fn shift_factor(&self, temperature_c: f64) -> Result<f64, TemperatureError> {
         above_zero(temperature_c)?;
         let reference_c = self.reference_c;

@@ -1,8 +1,8 @@
 //! Profile filters: the Gaussian of ISO 16610-21 and the Gaussian regression filters of
 //! ISO 16610-31, linear and robust, over missing points and up to the ends.
 //!
-//! The weights are `s(x) = exp(-π (x / (γ λc))²)`, normalised over the valid points in reach, with
-//! `γ = sqrt(ln 2 / π)` for the mean and 0.7309 for the parabola: a sine of the cut-off wavelength
+//! The weights are `s(x) = exp(-π (x / (α λc))²)`, normalised over the valid points in reach, with the filter constant
+//! `α = sqrt(ln 2 / π) = 0.4697` for the mean and 0.7309 for the parabola: a sine of the cut-off wavelength
 //! `λc` passes into the waviness by a half in both. They end where they have fallen to 7e-7.
 
 use nalgebra::{Matrix3, Vector3};
@@ -11,10 +11,12 @@ use serde::{Deserialize, Serialize};
 use statrs::statistics::{Data, OrderStatistics};
 use std::f64::consts::{LN_2, PI};
 
-/// Root of `(1 + u) exp(-u) = 1/2`: half transmission of the parabola.
-const HALF_OF_PARABOLA: f64 = 1.678_346_990_016_661;
-/// `π (x / (γ λc))²` at which the weights end; at `x = λc` for the mean, as the standard has it.
-const LAST_EXPONENT: f64 = PI * PI / LN_2;
+/// `π α²` of the Gaussian filter (ISO 16610-21): half transmission of the mean at the cut-off, `exp(-u) = 1/2`.
+const PI_ALPHA_SQUARED_OF_MEAN: f64 = LN_2;
+/// `π α²` of the Gaussian regression filter (ISO 16610-31): half transmission of the parabola, `(1 + u) exp(-u) = 1/2`.
+const PI_ALPHA_SQUARED_OF_PARABOLA: f64 = 1.678_346_990_016_661;
+/// `π (x / (α λc))²` at which the weights end; at `x = λc` for the mean, as the standard has it.
+const LAST_EXPONENT: f64 = PI * PI / PI_ALPHA_SQUARED_OF_MEAN;
 /// Scale of Tukey's biweight over the median absolute residual: three standard deviations.
 const BIWEIGHT_SCALE: f64 = 4.4478;
 /// Relative change of the scale at which the robust filter is settled.
@@ -41,20 +43,22 @@ pub enum ProfileFilter {
 pub fn waviness(heights: &[f64], spacing: f64, cutoff: f64, filter: ProfileFilter) -> Vec<f64> {
     let all = vec![1.0; heights.len()];
     match filter {
-        ProfileFilter::Gaussian => means(heights, &weights(spacing, cutoff, LN_2)),
+        ProfileFilter::Gaussian => {
+            means(heights, &weights(spacing, cutoff, PI_ALPHA_SQUARED_OF_MEAN))
+        }
         ProfileFilter::GaussianRegression => {
-            parabolas(heights, &all, &weights(spacing, cutoff, HALF_OF_PARABOLA))
+            parabolas(heights, &all, &weights(spacing, cutoff, PI_ALPHA_SQUARED_OF_PARABOLA))
         }
         ProfileFilter::RobustGaussian => {
-            robust(heights, &weights(spacing, cutoff, HALF_OF_PARABOLA))
+            robust(heights, &weights(spacing, cutoff, PI_ALPHA_SQUARED_OF_PARABOLA))
         }
     }
 }
 
-/// Weights at distances of 0, 1, 2 ... spacings. The transform of the Gaussian of `γ λc` is
-/// `exp(-half (λc / λ)²)` with `half = π γ²`.
-fn weights(spacing: f64, cutoff: f64, half: f64) -> Vec<f64> {
-    let exponent = PI * PI / half * (spacing / cutoff).powi(2);
+/// Weights at distances of 0, 1, 2 ... spacings. The transform of the Gaussian of `α λc` is
+/// `exp(-π α² (λc / λ)²)`.
+fn weights(spacing: f64, cutoff: f64, pi_alpha_squared: f64) -> Vec<f64> {
+    let exponent = PI * PI / pi_alpha_squared * (spacing / cutoff).powi(2);
     let last = (LAST_EXPONENT / exponent).sqrt().floor() as usize;
     (0..=last).map(|i| (-exponent * (i * i) as f64).exp()).collect()
 }
@@ -157,7 +161,7 @@ mod tests {
             let gaussian = (-LN_2 * r2).exp();
             let found = transmission(wavelength, ProfileFilter::Gaussian);
             approx::assert_abs_diff_eq!(found, gaussian, epsilon = ENDING);
-            let u = HALF_OF_PARABOLA * r2;
+            let u = PI_ALPHA_SQUARED_OF_PARABOLA * r2;
             let found = transmission(wavelength, ProfileFilter::GaussianRegression);
             approx::assert_abs_diff_eq!(found, (1.0 + u) * (-u).exp(), epsilon = ENDING);
         }

@@ -1,10 +1,10 @@
-//! Form of a scan: what is too long to be texture.
+//! Form of a scan: waves too long to be texture.
 
 use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Largest order of a polynomial form; above it the fit begins to take texture away.
+/// Largest order of a polynomial form; above it the fit begins to remove texture.
 pub const LARGEST_ORDER: usize = 12;
 
 /// The form to remove from a scan or a window, by least squares.

@@ -1,4 +1,4 @@
-//! The ladder of wavelengths that stand for a surface: each twice the one before.
+//! The ladder of wavelengths that represent a surface: each twice the one before.
 
 use crate::error_kind::{ErrorKind, HasKind};
 use schemars::JsonSchema;
@@ -86,7 +86,7 @@ pub enum LadderError {
     /// No waves.
     #[error("a ladder of 0 waves; ask for at least 1, usually 8 or 9")]
     NoWaves,
-    /// A wavelength that is no positive number.
+    /// A wavelength that is not positive.
     #[error("shortest wavelength {wavelength} m; give a positive length")]
     NotPositive {
         /// The wavelength in metres.

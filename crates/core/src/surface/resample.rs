@@ -95,7 +95,7 @@ pub fn place_on_grid(scan: &RawScan) -> Result<(Grid, GridFit), GridError> {
 
 /// Origin and spacing of the grid by least squares of the positions over their counted steps.
 fn fit_grid(positions: &[f64]) -> (f64, f64) {
-    // Where no point is absent the count of a position is its place in the list.
+    // Without absent points the count of a position is its index in the list.
     let (origin, spacing) =
         least_squares_line((0..positions.len()).map(|i| i as f64), positions.iter().copied());
     let on_grid = |(i, &position): (usize, &f64)| {
@@ -128,7 +128,7 @@ fn fit_grid(positions: &[f64]) -> (f64, f64) {
 /// Number of neighbouring points to average for a spacing of at most `target` metres: the whole
 /// number of raw steps in it, at least 1, so that no scan is ever made denser than it was measured.
 pub fn points_per_cell(raw_spacing: f64, target: f64) -> usize {
-    // A spacing fitted to printed positions may miss a round ratio by a hair.
+    // A spacing fitted to printed positions may miss a round ratio by round-off.
     const ROUNDING: f64 = 1e-3;
     ((target / raw_spacing * (1.0 + ROUNDING)).floor() as usize).max(1)
 }
@@ -136,7 +136,7 @@ pub fn points_per_cell(raw_spacing: f64, target: f64) -> usize {
 /// Mean of the valid heights in each run of `points` neighbouring ones. A cell with fewer than half
 /// of its heights valid is missing; points beyond the last whole cell are left out.
 ///
-/// White noise loses its variance as `1 / points`, the slower waves of the surface stay.
+/// White noise loses its variance as `1 / points`, the longer waves of the surface remain.
 pub fn block_means(grid: &Grid, points: usize) -> Grid {
     let mean = |block: &[f64]| {
         let valid = block.iter().filter(|height| !height.is_nan());

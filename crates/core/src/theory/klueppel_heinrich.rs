@@ -1,6 +1,6 @@
 //! Theory of Klüppel and Heinrich.
 
-use crate::rubber::Rubber;
+use crate::rubber::{FrequencyRange, RubberError, Viscoelastic};
 use crate::surface::SineScale;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -55,18 +55,25 @@ impl KlueppelHeinrich {
     /// The theory for a profile, its heights in m at equal spacing over a period, a rubber, a speed in
     /// m/s and `layer_ratio`, the factor b.
     ///
+    /// # Errors
+    /// [`RubberError::NotMeasured`] if the rubber is not known at the frequency of a wave.
+    ///
     /// # Panics
     /// Without a height, or if no wave has an amplitude.
     pub fn new(
         waves: &[SineScale],
         heights: &[f64],
-        rubber: &Rubber,
+        rubber: &dyn Viscoelastic,
         speed: f64,
         layer_ratio: f64,
-    ) -> Self {
+    ) -> Result<Self, RubberError> {
         let rough = || waves.iter().filter(|wave| wave.amplitude != 0.0);
         let length = rough().map(|wave| wave.wavelength).fold(0.0, f64::max);
         assert!(length > 0.0 && !heights.is_empty(), "a profile with heights and a wave");
+        let lengths = rough().map(|wave| wave.wavelength);
+        if let Some(excited) = FrequencyRange::excited(lengths, [speed.abs()]) {
+            rubber.require(excited)?;
+        }
         let mean = heights.iter().sum::<f64>() / heights.len() as f64;
         let mut heights: Vec<f64> = heights.iter().map(|z| z - mean).collect();
         heights.sort_by(f64::total_cmp);
@@ -75,13 +82,13 @@ impl KlueppelHeinrich {
             let modulus = rubber.complex_modulus(wavenumber * speed);
             wavenumber * wave.amplitude.powi(2) * modulus.im
         };
-        Self {
+        Ok(Self {
             heights,
             length,
             modulus: rubber.reduced_modulus(TAU * speed / length).norm(),
             dissipation: rough().map(loss).sum::<f64>() / (2.0 * TAU * length).powi(2),
             layer_ratio,
-        }
+        })
     }
 
     /// Mean penetration depth `<z_p>` in m at the contact area fraction, between 0 and 1.
@@ -141,7 +148,7 @@ impl KlueppelHeinrich {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rubber::MaxwellBranch;
+    use crate::rubber::{MaxwellBranch, Rubber};
     use crate::surface::{Wave, wave};
     use std::f64::consts::PI;
 
@@ -164,7 +171,7 @@ mod tests {
         let scale = SineScale { wavelength: 1e-3, amplitude: 2e-5 };
         let wave = Wave { wavelength: 1e-3, amplitude: 2e-5, phase: 0.3 };
         let heights = wave::sample(&[wave], 1e-3, POINTS);
-        KlueppelHeinrich::new(&[scale], &heights, &rubber(), SPEED, layer_ratio)
+        KlueppelHeinrich::new(&[scale], &heights, &rubber(), SPEED, layer_ratio).unwrap()
     }
 
     #[test]
@@ -238,7 +245,8 @@ mod tests {
                 frequency * loss * spectrum(frequency) * width
             })
             .sum();
-        let theory = KlueppelHeinrich::new(&waves, &[-height, height], &rubber, SPEED, 1.0);
+        let theory =
+            KlueppelHeinrich::new(&waves, &[-height, height], &rubber, SPEED, 1.0).unwrap();
         let (p, depth) = (theory.mean_pressure(0.4), theory.mean_penetration(0.4));
         let source = depth / (2.0 * TAU * TAU * p * SPEED) * integral;
         // The longest wave of the ladder is half a band shorter than ξ: 1e-3 of it, squared.
@@ -249,7 +257,7 @@ mod tests {
     fn an_elastic_body_has_no_friction() {
         let scale = SineScale { wavelength: 1e-3, amplitude: 2e-5 };
         let rubber = Rubber::elastic(3e6, 0.5);
-        let theory = KlueppelHeinrich::new(&[scale], &[-1e-5, 1e-5], &rubber, SPEED, 1.0);
+        let theory = KlueppelHeinrich::new(&[scale], &[-1e-5, 1e-5], &rubber, SPEED, 1.0).unwrap();
         assert_eq!(theory.friction_coefficient(), 0.0);
     }
 }

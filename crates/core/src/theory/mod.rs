@@ -8,8 +8,7 @@
 //!
 //! Both were made for isotropic surfaces with a continuous spectrum. Here they stand for superposed
 //! sines in plane strain, sliding along them: integrals over the wavenumber become sums over the
-//! waves and there is no angle to integrate over. A spectrum knows no phases, and no two waves may
-//! have the same length.
+//! waves and there is no angle to integrate over. Phases have no effect, and no two waves may have the same length.
 
 mod klueppel_heinrich;
 mod persson;

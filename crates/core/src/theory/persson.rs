@@ -1,6 +1,6 @@
 //! Persson's theory of rubber friction.
 
-use crate::rubber::Rubber;
+use crate::rubber::{FrequencyRange, RubberError, Viscoelastic};
 use crate::surface::SineScale;
 use statrs::function::erf::{erf, erf_inv};
 use std::f64::consts::TAU;
@@ -53,9 +53,21 @@ const PANEL: f64 = 0.125;
 impl Persson {
     /// The theory for a profile, a rubber, a speed in m/s, and γ between 0 and 1: the share of the
     /// strain of full contact that is left in vanishing contact.
-    pub fn new(waves: &[SineScale], rubber: &Rubber, speed: f64, gamma: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`RubberError::NotMeasured`] if the rubber is not known at the frequency of a wave.
+    pub fn new(
+        waves: &[SineScale],
+        rubber: &dyn Viscoelastic,
+        speed: f64,
+        gamma: f64,
+    ) -> Result<Self, RubberError> {
         let mut waves: Vec<&SineScale> = waves.iter().filter(|w| w.amplitude != 0.0).collect();
         waves.sort_by(|a, b| b.wavelength.total_cmp(&a.wavelength));
+        let lengths = waves.iter().map(|wave| wave.wavelength);
+        if let Some(excited) = FrequencyRange::excited(lengths, [speed.abs()]) {
+            rubber.require(excited)?;
+        }
         let mut variance = 0.0;
         let jump = |wave: &SineScale| {
             let wavenumber = TAU / wave.wavelength;
@@ -65,7 +77,7 @@ impl Persson {
             variance += slope * slope * modulus.norm_sqr() / 8.0;
             Jump { before, after: variance, stress: slope * slope * modulus.im / 4.0 }
         };
-        Self { gamma, jumps: waves.into_iter().map(jump).collect() }
+        Ok(Self { gamma, jumps: waves.into_iter().map(jump).collect() })
     }
 
     /// Variance of the pressure in full contact with all waves, in Pa².
@@ -123,7 +135,7 @@ impl Persson {
     }
 }
 
-/// Places and shares of the Gauss rule of three points.
+/// Abscissae and weights of the Gauss rule of three points.
 const GAUSS: [(f64, f64); 3] = [
     (-0.774_596_669_241_483_4, 5.0 / 18.0),
     (0.0, 8.0 / 18.0),
@@ -138,8 +150,8 @@ fn contact_area_fraction(mean_pressure: f64, variance: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::reference::FullContact;
-    use crate::rubber::MaxwellBranch;
-    use crate::surface::{Wave, wave};
+    use crate::rubber::{MaxwellBranch, Rubber};
+    use crate::surface::{TABLE_3_1_MM, Wave, wave};
     use proptest::prelude::*;
     use rustfft::num_complex::Complex64;
     use std::f64::consts::PI;
@@ -159,15 +171,17 @@ mod tests {
     }
 
     fn ladder() -> Vec<SineScale> {
-        [(6.25e-5, 1.867e-5), (1.25e-4, 2.648e-5), (2.5e-4, 2.939e-5)]
-            .map(|(wavelength, amplitude)| SineScale { wavelength, amplitude })
-            .to_vec()
+        let scale = |(wavelength, amplitude): &(f64, f64)| SineScale {
+            wavelength: 1e-3 * wavelength,
+            amplitude: 1e-3 * amplitude,
+        };
+        TABLE_3_1_MM[..3].iter().map(scale).collect()
     }
 
     #[test]
     fn at_large_pressure_it_is_full_contact() {
         let (rubber, waves) = (rubber(), ladder());
-        let theory = Persson::new(&waves, &rubber, SPEED, 0.5);
+        let theory = Persson::new(&waves, &rubber, SPEED, 0.5).unwrap();
         // Beyond six standard deviations erf is 1 to the last digit.
         let p = 10.0 * theory.pressure_variance().sqrt();
         let exact: f64 = waves
@@ -205,13 +219,13 @@ mod tests {
                 .sum()
         };
         let variance = (0..n).map(|i| pressure(i).powi(2)).sum::<f64>() / n as f64;
-        let theory = Persson::new(&scales, &rubber, SPEED, 0.5);
+        let theory = Persson::new(&scales, &rubber, SPEED, 0.5).unwrap();
         approx::assert_relative_eq!(theory.pressure_variance(), variance, max_relative = 1e-12);
     }
 
     #[test]
     fn small_loads_have_area_in_proportion_and_constant_friction() {
-        let theory = Persson::new(&ladder(), &rubber(), SPEED, 0.5);
+        let theory = Persson::new(&ladder(), &rubber(), SPEED, 0.5).unwrap();
         let p = 1e-4 * theory.pressure_variance().sqrt();
         // erf(x) = 2 x / sqrt(pi) (1 - x²/3 + ...).
         let area = 1e-4 * (2.0 / PI).sqrt();
@@ -227,7 +241,7 @@ mod tests {
     /// Without a reduction of strain the mean over a jump has a closed form.
     #[test]
     fn the_mean_over_a_jump_is_its_integral() {
-        let theory = Persson::new(&ladder(), &rubber(), SPEED, 1.0);
+        let theory = Persson::new(&ladder(), &rubber(), SPEED, 1.0).unwrap();
         for relative in [1e-5, 1e-3, 0.1, 0.5, 1.0, 3.0, 20.0] {
             let p = relative * theory.pressure_variance().sqrt();
             let integral = |v: f64| {
@@ -253,7 +267,7 @@ mod tests {
     #[test]
     fn a_wave_is_a_narrow_band_of_waves() {
         let (rubber, wave) = (rubber(), ladder()[0]);
-        let one = Persson::new(&[wave], &rubber, SPEED, 0.5);
+        let one = Persson::new(&[wave], &rubber, SPEED, 0.5).unwrap();
         let p = 0.2 * one.pressure_variance().sqrt();
         let count = 4000;
         let band: Vec<SineScale> = (0..count)
@@ -262,7 +276,7 @@ mod tests {
                 amplitude: wave.amplitude / f64::from(count).sqrt(),
             })
             .collect();
-        let band = Persson::new(&band, &rubber, SPEED, 0.5);
+        let band = Persson::new(&band, &rubber, SPEED, 0.5).unwrap();
         // An oracle that knows no mean over a jump: W in the middle of each.
         let sum: f64 = band
             .jumps
@@ -275,17 +289,17 @@ mod tests {
 
     #[test]
     fn an_elastic_body_and_a_flat_profile_have_no_friction() {
-        let elastic = Persson::new(&ladder(), &Rubber::elastic(3e6, 0.5), SPEED, 0.5);
+        let elastic = Persson::new(&ladder(), &Rubber::elastic(3e6, 0.5), SPEED, 0.5).unwrap();
         assert_eq!(elastic.friction_coefficient(1e5), 0.0);
         let flat = SineScale { wavelength: 1e-3, amplitude: 0.0 };
-        let flat = Persson::new(&[flat], &rubber(), SPEED, 0.5);
+        let flat = Persson::new(&[flat], &rubber(), SPEED, 0.5).unwrap();
         assert_eq!((flat.friction_coefficient(1e5), flat.contact_area_fraction(1e5)), (0.0, 1.0));
     }
 
     proptest! {
         #[test]
         fn pressure_and_area_are_inverse(area in 1e-4..0.99) {
-            let theory = Persson::new(&ladder(), &rubber(), SPEED, 0.5);
+            let theory = Persson::new(&ladder(), &rubber(), SPEED, 0.5).unwrap();
             let p = theory.mean_pressure(area);
             // The library's inverse of erf has eleven digits.
             let off = (theory.contact_area_fraction(p) / area - 1.0).abs();
@@ -295,7 +309,7 @@ mod tests {
         #[test]
         fn less_strain_in_partial_contact_is_less_friction(p in 1e3..1e8, gamma in 0.0..1.0) {
             let friction = |gamma| {
-                Persson::new(&ladder(), &rubber(), SPEED, gamma).friction_coefficient(p)
+                Persson::new(&ladder(), &rubber(), SPEED, gamma).unwrap().friction_coefficient(p)
             };
             prop_assert!(friction(gamma) <= friction(1.0) * (1.0 + 1e-12));
         }

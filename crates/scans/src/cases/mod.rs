@@ -1,5 +1,12 @@
 //! Files as laboratories send them: the cases beside the project, where they are there, and the
 //! same kinds made here.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `instrument` | files that state their units |
+//! | `points` | maps as text of one point per line |
+//! | `table` | text of columns: encodings, line ends, headers |
+//! | `workbook` | sheets of workbooks |
 
 mod instrument;
 mod points;

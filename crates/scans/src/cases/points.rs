@@ -77,7 +77,7 @@ fn what_is_no_grid_is_said() {
         let row = |i: usize| format!("{};{};1\n", i % 5, i / 5);
         (0..25).map(row).collect::<String>() + twice
     };
-    assert!(error(&grid("4;4;2\n")).contains("two points stand at the place of x = 4, y = 4"));
+    assert!(error(&grid("4;4;2\n")).contains("two points are at x = 4, y = 4"));
     assert!(error(&grid("5.5;4;2\n")).contains("off the grid"), "{}", error(&grid("5.5;4;2\n")));
     assert!(error(&grid("900;4;2\n")).contains("most of which is empty"));
     let diagonal: String = (0..6).map(|i| format!("{i};{i};1\n")).collect();

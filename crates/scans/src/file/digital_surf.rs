@@ -160,7 +160,7 @@ fn kind(code: i16) -> Result<&'static str, FileProblem> {
     }
 }
 
-/// Metres of the step unit of an axis, `None` where it is no length.
+/// Metres of the step unit of an axis; `None` if it is not a length.
 fn unit(bytes: &[u8], axis: usize) -> Result<Option<f64>, FileProblem> {
     let text = Cursor::at(bytes, offset::STEP_UNITS + 16 * axis).text(16, "unit of the axis")?;
     Ok(super::metres_of(&text))
@@ -188,7 +188,7 @@ fn instrument(bytes: &[u8], comment: u16) -> Result<Vec<(String, String)>, FileP
 struct Streams<'a> {
     /// Lengths of the streams that follow, plain and packed.
     directory: std::vec::IntoIter<(u64, u64)>,
-    /// The stream that is unpacked and what is left of it, then the bytes behind it.
+    /// The stream being unpacked with the remaining bytes of it, then the bytes after it.
     stream: ZlibDecoder<Take<Box<dyn Read + 'a>>>,
     left: u64,
 }
@@ -225,7 +225,7 @@ impl<'a> Streams<'a> {
         Ok(Self { directory: directory.into_iter(), stream, left: 0 })
     }
 
-    /// Goes on to the next stream; false if there is none.
+    /// Opens the next stream; false if there is none.
     fn next(&mut self) -> io::Result<bool> {
         let packed = self.stream.get_mut();
         io::copy(packed, &mut io::sink())?;
@@ -254,7 +254,7 @@ impl Read for Streams<'_> {
         self.left -= read as u64;
         // The decoder compares the checksum where it comes to the end.
         if self.left == 0 && self.stream.read(&mut [0])? > 0 {
-            let reason = "a stream goes on behind its length";
+            let reason = "a stream continues after its length";
             return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
         }
         Ok(read)

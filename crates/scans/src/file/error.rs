@@ -77,7 +77,7 @@ pub enum FileProblem {
         place: Place,
         /// Which quantity.
         what: &'static str,
-        /// What stands there.
+        /// What was found there.
         found: String,
         /// What should.
         expected: String,
@@ -124,19 +124,19 @@ pub enum FileProblem {
     },
     /// A line or a word longer than any of a scan.
     #[error(
-        "line {line}: it goes on for more than {limit} bytes without {end}, and a scan has no such line; export it again"
+        "line {line}: it is longer than {limit} bytes without {end}, and a scan has no such line; export it again"
     )]
     Endless {
         /// Number of the line, from 1.
         line: usize,
         /// Longest that is read, in bytes.
         limit: usize,
-        /// What should stand there.
+        /// What was expected there.
         end: &'static str,
     },
-    /// The file ends within a number, of which what is left is a number as well.
+    /// The file ends within a number, and the part before is a number as well.
     #[error(
-        "line {line}: the file ends here without a line end, within or behind `{text}`, which has fewer digits than all \
+        "line {line}: the file ends here without a line end, within or after `{text}`, which has fewer digits than all \
          numbers before it: it is most likely cut off; copy it again, or end the line if it is complete"
     )]
     CutNumber {

@@ -128,7 +128,7 @@ pub(super) fn foreign_archive(bytes: &[u8]) -> Option<FileProblem> {
         ("a zip archive of files", "unpack it and list the folder under ingest.scans")
     } else {
         (
-            "a zip archive that is no X3P file (it has no main.xml)",
+            "a zip archive that is not an X3P file (it has no main.xml)",
             "from the program of an instrument (MountainsMap .mnt, Zemetrics .zmp and the like) export the surface as \
              SDF, X3P or Digital Surf .sur",
         )

@@ -1,8 +1,8 @@
 //! Height maps as text from Gwyddion: four comment lines in the language of the user (channel,
 //! width, height, unit of the values) and a line of numbers for each row.
 //!
-//! Width and height are those of the whole image, of which each point stands for one cell. Words
-//! before the colons are translated; the numbers and units behind them are what counts.
+//! Width and height are those of the complete image; each point represents one cell. Words
+//! before the colons are translated; the numbers and units after them are read.
 
 use super::bytes::count;
 use super::error::{FileProblem, Place, shorten, unexpected};
@@ -11,7 +11,7 @@ use super::{OpenScan, grid, metres_of, spacing};
 use crate::Source;
 use crate::last_number::LastNumber;
 
-/// The first four lines, taken apart.
+/// The parts of the first four lines.
 struct Header<'a> {
     channel: &'a str,
     width: (f64, &'a str),
@@ -25,14 +25,14 @@ impl<'a> Header<'a> {
         let mut value = || Some(values.next()??.1.trim());
         let channel = value()?;
         let (width, height, unit) = (length(value()?)?, length(value()?)?, value()?);
-        // A unit is one word and no number, and rows of numbers follow, not more comments.
+        // A unit is one word and not a number, and rows of numbers follow instead of more comments.
         let is_unit = !unit.is_empty() && !unit.contains(' ') && number(unit).is_none();
         let followed = text.lines().nth(4).is_some_and(|line| !line.starts_with('#'));
         (is_unit && followed).then_some(Self { channel, width, height, unit })
     }
 }
 
-/// A number and the unit behind it.
+/// A number and the unit after it.
 fn length(text: &str) -> Option<(f64, &str)> {
     let (value, unit) = text.split_once(' ')?;
     Some((number(value)?, unit.trim())).filter(|(_, unit)| !unit.is_empty() && !unit.contains(' '))

@@ -11,7 +11,7 @@
 //! | OpenCRG | grid of a road, text or binary | ASAM OpenCRG 1.2 |
 //! | SMATS | profile as XML | NIST surface metrology data base |
 //!
-//! The format is told by the content; the name of the file does not matter. Every size that a
+//! The format is recognised by the content; the name of the file does not matter. Every size that a
 //! file declares is compared with what the file holds before memory is asked for: to read n bytes
 //! takes at most 32 MB, 24 n and 8 bytes a declared point. SDF, ERD and Digital Surf are read as
 //! streams, of which some thousand points at a time are in memory ([`open`]).
@@ -54,7 +54,7 @@ use std::path::Path;
 /// by row, and its chosen lines may have as many.
 pub const LARGEST_POINTS: u64 = 1 << 28;
 
-/// First bytes by which a format is told.
+/// First bytes by which a format is recognised.
 pub const DETECTED_BY: usize = 1 << 16;
 
 /// Format of instrument files.
@@ -132,11 +132,11 @@ pub enum Grid {
 pub struct OpenScan<'a> {
     /// Name of the format with its variant, such as `SDF bISO-1.0`.
     pub format: String,
-    /// How it was told, in words, with what of the file was decisive.
+    /// How it was recognised, in words, with the deciding part of the file.
     pub detected: String,
     /// Spacing and shape.
     pub grid: Grid,
-    /// What the file says of the instrument and the measurement: name and value.
+    /// Statements of the file on the instrument and the measurement: name and value.
     pub instrument: Vec<(String, String)>,
     /// Number of points that the file declares, and where.
     declared: Option<(u64, Place)>,
@@ -176,7 +176,7 @@ impl OpenScan<'_> {
     }
 
     /// Gives the profile, or every `step`-th row or column of a map that holds a height, to
-    /// `each` as line scans, each as soon as it is complete: of the others nothing is kept. Those
+    /// `each` as line scans, each as soon as it is complete; others are not kept. Those
     /// of a map are named `name_row_0000` and so on, by their number in the file.
     ///
     /// # Errors
@@ -215,13 +215,13 @@ impl OpenScan<'_> {
 pub struct ScanFile {
     /// Name of the format with its variant, such as `SDF bISO-1.0`.
     pub format: String,
-    /// How it was told, in words, with what of the file was decisive.
+    /// How it was recognised, in words, with the deciding part of the file.
     pub detected: String,
     /// Spacing and shape.
     pub grid: Grid,
     /// Heights in metres, row after row; NaN where missing.
     pub heights: Vec<f64>,
-    /// What the file says of the instrument and the measurement: name and value.
+    /// Statements of the file on the instrument and the measurement: name and value.
     pub instrument: Vec<(String, String)>,
 }
 
@@ -363,7 +363,7 @@ pub fn read_channel(path: &Path, channel: Option<usize>) -> Result<Option<ScanFi
 /// workbook, which a description goes with.
 ///
 /// # Errors
-/// [`FileError`] that tells of the file as `name`; files of kinds that are known and not read are
+/// [`FileError`] that names the file `name`; files of kinds that are known and not read are
 /// named with the way out ([`FileProblem::Foreign`]).
 pub fn parse_file(name: &str, bytes: &[u8]) -> Result<Option<ScanFile>, FileError> {
     open(Source::of_bytes(bytes))
@@ -386,7 +386,7 @@ fn metres_of(unit: &str) -> Option<f64> {
         "m" => 1.0,
         "cm" => 1e-2,
         "mm" => 1e-3,
-        // The micro sign, the Greek letter and what is left of them where an encoding was lost.
+        // The micro sign, the Greek letter and what a wrong encoding makes of them.
         "um" | "\u{b5}m" | "\u{3bc}m" | "~m" => 1e-6,
         "nm" => 1e-9,
         "pm" => 1e-12,

@@ -67,7 +67,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<ScanFile, FileProblem> {
     })
 }
 
-/// Whether the first line says that heights are in nanometres.
+/// Whether the first line states that heights are in nanometres.
 fn flag(first: &str) -> Result<bool, FileProblem> {
     let flags: Vec<&str> = first[SIGNATURE.len()..].split_whitespace().collect();
     match flags.as_slice() {
@@ -107,7 +107,7 @@ impl<'a> File<'a> {
                 [_, value] | [_, _, _, value, ..] => *value,
                 _ => continue,
             };
-            // Numbers of an array that is passed over are no fields.
+            // Numbers of a skipped array are not fields.
             if name.starts_with(|c: char| !c.is_alphabetic())
                 || name == "Bad"
                 || name == "Block Name"

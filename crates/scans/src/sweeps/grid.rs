@@ -28,7 +28,7 @@ pub(super) struct Row {
 pub(super) struct Grid {
     /// The separator of a text, the name of a sheet.
     pub seen_as: String,
-    /// Whether cells stand at any run of blanks, so that names may fall apart.
+    /// Whether any run of blanks separates cells, so that names may be split.
     pub blanks: bool,
     pub rows: Vec<Row>,
 }
@@ -102,7 +102,7 @@ fn row(text: &str, line: u64, separator: Separator) -> Row {
     Row { line, comment, cells }
 }
 
-/// A header without the remark in parentheses at its end, whose words are no names of columns; a unit has at
+/// A header without the remark in parentheses at its end, whose words are not names of columns; a unit has at
 /// most two words.
 fn without_remark(text: &str) -> &str {
     let inner = text.trim_end().strip_suffix(')').and_then(|text| text.rsplit_once(" ("));
@@ -139,7 +139,7 @@ fn split(text: &str, separator: char) -> Vec<String> {
 /// The sheets of a workbook, or the one of a name.
 fn sheets(bytes: Vec<u8>, wanted: Option<&str>) -> Result<Vec<Grid>, String> {
     let broken = |error: &dyn std::fmt::Display| {
-        format!("it cannot be read as an .xlsx workbook ({error}): save it anew, or as CSV")
+        format!("it cannot be read as an .xlsx workbook ({error}): save it again, or as CSV")
     };
     let mut archive = zip::ZipArchive::new(Cursor::new(&bytes)).map_err(|error| broken(&error))?;
     let mut size = 0_u64;

@@ -13,7 +13,7 @@ pub(super) enum Wanted {
 }
 
 impl Wanted {
-    /// The quantities without which there is no table, each with what may stand in for it.
+    /// The quantities without which there is no table, each with its alternatives.
     fn needed(self) -> Vec<[Quantity; 2]> {
         use Quantity::*;
         match self {
@@ -52,7 +52,7 @@ pub(super) struct Column {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
     pub columns: Vec<Column>,
-    /// Number of the first row behind header and units.
+    /// Number of the first row after header and units.
     pub first_row: usize,
     /// Cells of the header; 0 without one.
     pub width: usize,
@@ -93,7 +93,7 @@ impl FromStr for DescribedColumn {
     }
 }
 
-/// The first table at or behind a row.
+/// The first table at or after a row.
 ///
 /// # Errors
 /// A header whose units or columns leave a question, with its line.
@@ -200,7 +200,7 @@ fn below(header: &Row, units: &Row, blanks: bool) -> Row {
     Row { cells: cells.collect(), ..*units }
 }
 
-/// Whether a row behind a header states units: one of them, and no number where a column is.
+/// Whether a row after a header states units: at least one, and no number in a column.
 fn are_units(row: &Row, found: &[(usize, Named)]) -> bool {
     let cell = |index: usize| row.cells.get(index).map_or("", String::as_str);
     let number = |text: &str| text.replace(',', ".").parse::<f64>().is_ok();

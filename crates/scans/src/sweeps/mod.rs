@@ -2,8 +2,15 @@
 //!
 //! A header names quantities with their units, as instruments write them, or the user
 //! describes the columns; units are never guessed. Separator, encoding and decimal mark follow from
-//! the content where only one reading is possible. A file may hold several tables, one behind the
+//! the content where only one reading is possible. A file may hold several tables, one after the
 //! other, as instruments export a sweep for each temperature.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `grid` | a file as rows of cells |
+//! | `names`, `layout` | quantity and unit of a column by its name; which column holds what |
+//! | `rows` | the numbers below a header |
+//! | `doubts` | warnings of numbers that look like a mistake of units or columns |
 
 #[cfg(test)]
 mod bundled;
@@ -52,7 +59,7 @@ pub enum TableError {
         /// What the operating system answered.
         source: std::io::Error,
     },
-    /// The text as a whole, or one line of it.
+    /// The complete text, or one line of it.
     #[error("{}{}: {problem}", .path.display(), .line.map_or(String::new(), |line| format!(", line {line}")))]
     Problem {
         /// The file.
@@ -77,7 +84,7 @@ impl HasKind for TableError {
 pub struct TableOptions {
     /// Columns; by the header if empty.
     pub columns: Vec<DescribedColumn>,
-    /// What stands between the cells.
+    /// The separator of the cells.
     pub separator: Option<Separator>,
     /// The decimal mark.
     pub decimal_mark: Option<DecimalMark>,
@@ -205,7 +212,7 @@ fn factors_of(grids: &[Grid], options: &TableOptions) -> Result<Vec<GivenShift>,
         if factors.iter().any(|other| other.temperature_c == shift.temperature_c) {
             let text = record.text(names::Quantity::Temperature);
             let problem = format!(
-                "the temperature {text} stands here for the second time: keep one of its factors"
+                "the temperature {text} is given here for the second time: keep one of its factors"
             );
             return Err((Some(record.line), problem));
         }
@@ -266,7 +273,7 @@ fn twice(record: &Record, temperature_c: Option<f64>, strain: bool) -> String {
     } else {
         "average the rows, or give each temperature in a column temperature_c"
     };
-    format!("the frequency {frequency}{at} stands here for the second time: {what}")
+    format!("the frequency {frequency}{at} is given here for the second time: {what}")
 }
 
 struct Point {

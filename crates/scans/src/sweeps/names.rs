@@ -1,8 +1,8 @@
 //! What the name of a column says: quantity and unit.
 //!
 //! Names as instruments write them: `Storage modulus`, `E'`, `G"`, `E_stor`, `M''`, `Temp./°C`,
-//! `Angular frequency [rad/s]`; and as this program does: `storage_mpa`. A unit stands in the
-//! name, in brackets, behind a slash, or in the row below.
+//! `Angular frequency [rad/s]`; and as this program does: `storage_mpa`. A unit is in the
+//! name, in brackets, after a slash, or in the row below.
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -9,7 +9,7 @@ use crate::thousands::thousands_mark;
 use asperity_core::rubber::ZERO_CELSIUS;
 use std::f64::consts::TAU;
 
-/// The cells of a row that are read, as they stand in the file.
+/// The cells of a row that are read, as written in the file.
 pub(super) struct Cells {
     line: u64,
     cells: Vec<(Column, String)>,
@@ -21,7 +21,7 @@ pub(super) struct Record {
     values: Vec<(Column, String, f64)>,
 }
 
-/// Adds the rows of a table; returns the row behind it.
+/// Adds the rows of a table; returns the row after it.
 pub(super) fn block(
     grid: &Grid,
     layout: &Layout,
@@ -147,7 +147,7 @@ impl Record {
         self.values.iter().find(|(column, ..)| column.quantity == quantity)
     }
 
-    /// A value as it stands in the file.
+    /// A value as written in the file.
     pub fn text(&self, quantity: Quantity) -> &str {
         self.value(quantity).map_or("", |(_, text, _)| text.as_str())
     }

@@ -5,7 +5,7 @@ use crate::description::{Column, Separator};
 use crate::{ScanProblem, TextFormat};
 use csv::StringRecord;
 
-/// Places of the columns, from 0, and what the header says of them.
+/// Indices of the columns, from 0, and their names in the header.
 pub(super) struct Columns {
     /// `None` for a file of heights only.
     pub(super) x: Option<usize>,

@@ -21,7 +21,7 @@ pub(super) fn on_grid(points: Points, format: &TextFormat) -> Result<ScanFile, S
     let places = columns.saturating_mul(rows);
     if places > MOST_PLACES * z.len() || places as u64 > LARGEST_POINTS {
         return Err(problem(format!(
-            "{} points stand on a grid of {rows} rows of {columns}, most of which is empty; check `x_column` and \
+            "{} points are on a grid of {rows} rows of {columns}, most of which is empty; check `x_column` and \
              `y_column`, or export the map on an equal grid",
             z.len()
         )));
@@ -44,7 +44,7 @@ pub(super) fn on_grid(points: Points, format: &TextFormat) -> Result<ScanFile, S
         let place = row * columns + column;
         if std::mem::replace(&mut taken[place], true) {
             return Err(problem(format!(
-                "two points stand at the place of x = {x}, y = {y} (in the unit of the file); delete one of them"
+                "two points are at x = {x}, y = {y} (in the unit of the file); delete one of them"
             )));
         }
         heights[place] = sign * unit(format.z_unit).metres(*z);

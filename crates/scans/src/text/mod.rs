@@ -1,4 +1,9 @@
 //! Text files of one point per line.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `rows`, `columns`, `number` | lines as cells, the cells of position and height, cells as numbers |
+//! | `map` | height maps: x, y and z on each line |
 
 mod columns;
 mod map;
@@ -66,7 +71,7 @@ pub fn read_described(path: &Path, format: &TextFormat) -> Result<Described, Sca
 /// Reads the line scan in the bytes of a text file.
 ///
 /// # Errors
-/// [`ScanError`] that tells of the file as `name`; for the description of a height map.
+/// [`ScanError`] that names the file `name`; for the description of a height map.
 pub fn parse_text(name: &str, bytes: &[u8], format: &TextFormat) -> Result<RawScan, ScanError> {
     match parse_described(name, bytes, format)? {
         Described::Line(scan) => Ok(scan),
@@ -84,7 +89,7 @@ fn no_line() -> ScanProblem {
 /// [`read_source`] of the bytes of a file.
 ///
 /// # Errors
-/// [`ScanError`] that tells of the file as `name`.
+/// [`ScanError`] that names the file `name`.
 pub fn parse_described(
     name: &str,
     bytes: &[u8],
@@ -97,7 +102,7 @@ pub fn parse_described(
 /// a workbook. Positions and heights are converted to metres, missing heights are NaN.
 ///
 /// # Errors
-/// [`ScanError`] that tells of the file as `name`.
+/// [`ScanError`] that names the file `name`.
 pub fn read_source(
     name: &str,
     source: Source<'_>,
@@ -117,7 +122,7 @@ pub fn read_source(
         let format = TextFormat { separator, encoding: "utf-8".into(), ..format.clone() };
         (Source::of_bytes(sheet.as_bytes()), Cow::Owned(format))
     } else if format.sheet.is_some() {
-        let reason = "names a sheet, but the file is no workbook (.xlsx); leave it out".into();
+        let reason = "names a sheet, but the file is not a workbook (.xlsx); leave it out".into();
         return Err(whole(ScanProblem::Description { key: "sheet", reason }));
     } else {
         (source, Cow::Borrowed(format))
@@ -208,7 +213,7 @@ fn read_points(mut rows: Rows<'_>, format: &TextFormat) -> Result<Points, Failur
     }
 }
 
-/// How the lines of points end, to tell a file that was cut in its last one.
+/// How the lines of points end, to detect a file that was cut in its last one.
 #[derive(Default)]
 struct Ends {
     numbers: LastNumber,
@@ -232,7 +237,7 @@ impl Ends {
             self.numbers.note(&record[last]);
             return Ok(());
         }
-        // A cut in another column leaves position and height whole.
+        // A cut in another column leaves position and height complete.
         if last != columns.z && columns.x != Some(last) {
             return Ok(());
         }

@@ -16,11 +16,11 @@ pub(super) struct Rows<'a> {
     comment: Option<char>,
     separator: Separator,
     quotes: Quotes,
-    /// Start of the first line behind the points.
+    /// Start of the first line after the points.
     stop_at: Option<String>,
     /// Whether it has come.
     stopped: bool,
-    /// Whether a blank line stands before the record last read, or is that record.
+    /// Whether a blank line precedes the record last read, or is that record.
     after_blank_line: bool,
 }
 
@@ -40,7 +40,7 @@ impl<'a> Rows<'a> {
 
     /// Reads the next line into `record`; false at the end of the points.
     ///
-    /// Every line is a record of its own: where a cell opens a quotation mark that is not closed,
+    /// Every line is a separate record: where a cell opens a quotation mark that is not closed,
     /// the points up to the next such mark would be lost in it.
     pub(super) fn read(&mut self, record: &mut StringRecord) -> Result<bool, Located> {
         self.after_blank_line = false;
@@ -80,7 +80,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Reads the column names: as [`Rows::read`], but a name in quotation marks may go on over
-    /// some lines, as spreadsheets write it, unless numbers stand there.
+    /// some lines, as spreadsheets write it, unless there are numbers.
     pub(super) fn read_names(
         &mut self,
         record: &mut StringRecord,
@@ -123,7 +123,7 @@ impl<'a> Rows<'a> {
         self.lines.number()
     }
 
-    /// Whether a blank line stands between the record last read and the one before.
+    /// Whether there is a blank line between the record last read and the one before.
     pub(super) fn follows_blank_line(&self) -> bool {
         self.after_blank_line
     }
@@ -178,7 +178,7 @@ impl Quotes {
 
     fn split(&mut self, line: &str, record: &mut StringRecord) -> Closed {
         self.reader.reset();
-        // Cells are no longer than the line; there is one more than separators.
+        // Cells are not longer than the line; there is one more than separators.
         self.cells.resize(line.len() + 1, 0);
         self.ends.resize(line.len().min(MOST_CELLS) + 2, 0);
         let (mut written, mut ended) = (0, 0);
@@ -197,7 +197,7 @@ impl Quotes {
                         let mut start = 0;
                         for end in &self.ends[..ended] {
                             let cell = &self.cells[start..*end];
-                            // Separators and quotation marks are ASCII: cells are whole letters.
+                            // Separators and quotation marks are ASCII: cells are valid UTF-8.
                             record.push_field(&String::from_utf8_lossy(cell));
                             start = *end;
                         }

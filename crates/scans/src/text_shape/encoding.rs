@@ -47,7 +47,7 @@ fn wide(bytes: &[u8]) -> Option<&'static Encoding> {
     }
 }
 
-/// Whether bytes beyond ASCII stand in runs of even length more often than not, as those of the
+/// Whether bytes beyond ASCII occur in runs of even length more often than not, as those of the
 /// common Hangul do. A lone one is a letter of Western European: `\xb5m` is `\u{b5}m`, though CP949
 /// has a rare syllable for these two bytes as well.
 fn stands_in_pairs(bytes: &[u8]) -> bool {

@@ -1,11 +1,11 @@
-//! Ways to take the lines of a text apart, and the lines of points that they find.
+//! Ways to split the lines of a text, and the lines of points that they find.
 
 use super::missing;
 use crate::description::{DecimalMark, Separator};
 use crate::thousands::thousands_mark;
 use csv::ReaderBuilder;
 
-/// A way to take lines apart.
+/// A way to split lines.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     pub(super) separator: Separator,

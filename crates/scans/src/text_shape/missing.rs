@@ -2,7 +2,7 @@
 
 use crate::description::default_missing;
 
-/// Words that stand for a missing height.
+/// Words for a missing height.
 const WORDS: [&str; 8] = ["", "nan", "bad", "na", "n/a", "null", "---", "*"];
 
 /// More words for a gap than any instrument has.
@@ -28,7 +28,7 @@ pub(super) fn words(words: impl Iterator<Item = String>) -> Vec<String> {
     found
 }
 
-/// The smallest and the largest number where they stand there more than once, further from the
+/// The smallest and the largest number if they occur more than once, further from the
 /// numbers between them than three times the range of these. A clipped height repeats as well, but
 /// close to the others.
 pub(super) fn numbers(heights: &[f64]) -> Vec<f64> {
@@ -57,14 +57,14 @@ pub(super) fn numbers(heights: &[f64]) -> Vec<f64> {
     marks
 }
 
-/// A height that is written in place of missing ones, inside the range of all others.
+/// A height that is written for missing ones, inside the range of all others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RepeatedHeight {
     /// The height, in the unit of the others.
     pub height: f64,
     /// How often it is there.
     pub count: usize,
-    /// How often any height that is no mark is there at most.
+    /// How often the most frequent height that is not a mark occurs.
     pub others: usize,
 }
 

@@ -39,7 +39,7 @@ pub(super) fn footer(
     body: &Body,
     comment: Option<char>,
 ) -> Option<String> {
-    /// Of a sentence, the start tells it well enough.
+    /// The start of a sentence is enough.
     const LONGEST: usize = 40;
     let behind = || lines(text).skip(body.start + body.rows());
     let line = behind().map(str::trim).find(|line| line.chars().any(char::is_alphanumeric))?;
@@ -104,7 +104,7 @@ pub(super) fn unit_in(name: &str) -> Option<LengthUnit> {
 fn unit_of(word: &str) -> Option<LengthUnit> {
     match word {
         "nm" | "nanometer" | "nanometers" | "nanometre" | "nanometres" => Some(LengthUnit::Nm),
-        // The micro sign, the Greek letter, and what is left of them where an encoding was lost.
+        // The micro sign, the Greek letter, and what a wrong encoding makes of them.
         "um" | "\u{b5}m" | "\u{3bc}m" | "\u{e6}m" | "\u{fffd}m" => Some(LengthUnit::Um),
         "micron" | "microns" | "micrometer" | "micrometers" | "micrometre" | "micrometres" => {
             Some(LengthUnit::Um)

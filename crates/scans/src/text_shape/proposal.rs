@@ -1,4 +1,4 @@
-//! The description that would read a text, as it stands in a recipe.
+//! The description that would read a text, in the form of a recipe.
 
 use super::TextShape;
 use crate::TextFormat;
@@ -114,7 +114,7 @@ impl TextShape {
         }
     }
 
-    /// A column by its name, by its number where that tells it better.
+    /// A column by its name, or by its number if that is clearer.
     fn column(&self, number: usize) -> Column {
         let name = &self.columns[number].name;
         let unique = self.columns.iter().filter(|column| column.name == *name).count() == 1;

@@ -3,23 +3,13 @@
 use super::{Case, Failure, Method, Prepared, Reference};
 use asperity::contact::SlidingContact;
 use asperity::rubber::Rubber;
-use asperity::surface::{Wave, wave};
+use asperity::surface::{TABLE_3_1_MM, Wave, wave};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// Wavelengths and amplitudes in mm of thesis Table 3.1, and the ninth of Table 3.2.
-const WAVES_MM: [(f64, f64); 9] = [
-    (0.0625, 0.01867),
-    (0.125, 0.02648),
-    (0.25, 0.02939),
-    (0.5, 0.06626),
-    (1.0, 0.06177),
-    (2.0, 0.21635),
-    (4.0, 0.14772),
-    (8.0, 0.48995),
-    (16.0, 0.21994),
-];
+/// Wavelength and amplitude in mm of the ninth wave, thesis Table 3.2.
+const NINTH_MM: (f64, f64) = (16.0, 0.21994);
 /// Sliding speed in m/s of every case.
 pub(super) const SPEED: f64 = 0.01;
 
@@ -99,8 +89,10 @@ pub(super) fn contact(
 /// The shortest waves, 1 to 9 of them, with phases that are drawn once and for all.
 pub(super) fn surface(waves: usize) -> Vec<Wave> {
     let mut generator = Pcg64::seed_from_u64(1);
-    WAVES_MM[..waves]
+    TABLE_3_1_MM
         .iter()
+        .chain([&NINTH_MM])
+        .take(waves)
         .map(|(wavelength, amplitude)| Wave {
             wavelength: 1e-3 * wavelength,
             amplitude: 1e-3 * amplitude,

@@ -1,4 +1,4 @@
-//! The pressure for a wanted contact area.
+//! The pressure that gives a contact area.
 
 use super::super::error::FemError;
 use super::SteadyContact;
@@ -34,14 +34,11 @@ impl SteadyContact {
         }
         let mut guess = self.setting.first_pressure(&self.profile).ln();
         let (mut lower, mut upper): (Option<End>, Option<End>) = (None, None);
+        let error_of = |solution: &SteadySolution| (solution.contact_area_fraction / fraction).ln();
+        let mut best = self.solve(guess.exp())?;
+        let mut error = error_of(&best);
         let mut previous = 0.0;
-        let mut best: Option<(f64, SteadySolution)> = None;
-        for _ in 0..MOST_SOLVES {
-            let solution = self.solve(guess.exp())?;
-            let error = (solution.contact_area_fraction / fraction).ln();
-            if best.as_ref().is_none_or(|(nearest, _)| error.abs() < nearest.abs()) {
-                best = Some((error, solution));
-            }
+        for _ in 1..MOST_SOLVES {
             let new = End { place: guess, error };
             match (&mut lower, &mut upper) {
                 (Some(low), Some(up)) => bracket::narrow(low, up, new, previous * error > 0.0),
@@ -55,16 +52,20 @@ impl SteadyContact {
                 (Some(low), Some(up)) => bracket::secant(low, up),
                 _ => guess - (HERTZ * error + 0.1 * error.signum()).clamp(-LARGEST_STEP, 3.0),
             };
+            let solution = self.solve(guess.exp())?;
+            error = error_of(&solution);
+            if error.abs() < error_of(&best).abs() {
+                best = solution;
+            }
         }
-        match best {
-            Some((error, solution)) if error.abs() <= tolerance.ln_1p() => Ok(solution),
-            Some((_, solution)) => Err(FemError::AreaNotReached {
-                wanted: fraction,
-                found: solution.contact_area_fraction,
-                pressure: solution.mean_pressure,
-                columns: self.options.columns,
-            }),
-            None => unreachable!("at least one contact has been solved"),
+        if error_of(&best).abs() <= tolerance.ln_1p() {
+            return Ok(best);
         }
+        Err(FemError::AreaNotReached {
+            wanted: fraction,
+            found: best.contact_area_fraction,
+            pressure: best.mean_pressure,
+            columns: self.options.columns,
+        })
     }
 }

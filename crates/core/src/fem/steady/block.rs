@@ -31,7 +31,7 @@ impl Block {
         &self.rows
     }
 
-    /// Takes over displacements in m and returns the internal forces in N/m.
+    /// Sets displacements in m and returns the internal forces in N/m.
     ///
     /// # Errors
     /// [`Inverted`].
@@ -65,7 +65,7 @@ impl Block {
         forces
     }
 
-    /// Power in W/m that the branches turn into heat at the displacements taken over last.
+    /// Power in W/m that the branches turn into heat at the last displacements.
     pub fn dissipation(&self, displacements: &[Long]) -> f64 {
         let (grid, material) = (&self.grid, &self.material);
         let rows = self.rows.par_iter().enumerate();

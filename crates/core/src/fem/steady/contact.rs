@@ -6,9 +6,9 @@
 //! λ = c (r + τ) / 2,   g = (r - τ) / 2,   r = sqrt(τ² + 4 ε / c),   so that   λ g = ε
 //! ```
 //!
-//! with a stiffness c and a barrier ε. Both are positive for every τ, so no step has to be cut to keep
-//! them so, and `ε = 0` is the exact law: contact where τ is positive, with the force `c τ`, and the gap
-//! `-τ` elsewhere.
+//! with a stiffness c and a barrier ε. Both are positive for every τ, so no step has to be shortened to keep them
+//! positive, and `ε = 0` is the exact law: contact where τ is positive, with the force `c τ`, and the gap `-τ`
+//! elsewhere.
 
 /// Forces and gaps of the contact nodes, with their derivatives by τ.
 #[derive(Debug, Clone, Default)]

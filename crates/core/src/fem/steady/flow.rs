@@ -39,8 +39,8 @@ impl Weights {
     }
 }
 
-/// Weights of the four values from `m_j = ∫_0^1 a e^{-a(1-t)} t^j dt`: Lagrange's cubics for the places
-/// -1, 0, 1, 2 in powers of t, which runs from point n-1 to point n.
+/// Weights of the four values from `m_j = ∫_0^1 a e^{-a(1-t)} t^j dt`: Lagrange's cubics for the abscissae -1, 0, 1, 2
+/// in powers of t, which runs from point n-1 to point n.
 fn cubic(m: &[f64; 4]) -> [f64; 4] {
     [
         -m[1] / 3.0 + m[2] / 2.0 - m[3] / 6.0,
@@ -104,8 +104,7 @@ pub(super) struct Relaxation {
 }
 
 impl Relaxation {
-    /// First point of a sweep that ends at the last one with nothing but what the row has put into it,
-    /// to round-off.
+    /// First point of a sweep whose state at the last point depends on the row alone, to round-off.
     pub fn start(&self, spacings: &[f64]) -> usize {
         let (mut travelled, far) = (0.0, FORGOTTEN * self.length);
         let start = spacings.iter().rposition(|spacing| {
@@ -115,8 +114,7 @@ impl Relaxation {
         start.unwrap_or(0)
     }
 
-    /// What a sweep over one period from nothing has to be divided by: each earlier period adds the
-    /// same again, decayed.
+    /// Divisor of the result of a sweep over one period from zero: each earlier period adds the same again, decayed.
     pub fn whole_period(&self) -> f64 {
         -(-self.period / self.length).exp_m1()
     }
@@ -171,7 +169,7 @@ mod tests {
             let errors = [32, 64, 128].map(|points| error(points, length, 0.0));
             let order = (errors[1] / errors[2]).log2();
             assert!(errors[2] < 1e-6, "{length}: {errors:?}");
-            // Long memories err by less than round-off lets an order be seen.
+            // For long relaxation lengths the error is below round-off, so no order can be observed.
             assert!(errors[2] < 1e-11 || order > 2.9, "{length}: {errors:?}, order {order}");
         }
     }

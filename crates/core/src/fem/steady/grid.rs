@@ -1,12 +1,12 @@
-//! The grid of labels `(s, Z)`: columns that stand above their points of the profile, rows of the
-//! undeformed block, which have fewer columns away from the contact.
+//! The grid of labels `(s, Z)`: columns above fixed points of the profile, and rows of the undeformed block, with fewer
+//! columns away from the contact.
 
 use super::super::mesh::Element;
 use super::BlockOptions;
 use super::long::Value;
 use std::borrow::Cow;
 
-/// Height of a row over its columns from which the rows above have half as many columns.
+/// Height over width of the elements of a row above which the next rows have half as many columns.
 const COARSEN: f64 = 4.0;
 /// Fewest columns that are halved on: a row that is not has at least half as many.
 const FEWEST_COLUMNS: usize = 64;
@@ -69,7 +69,7 @@ impl Grid {
         self.first[self.rows() + 1]
     }
 
-    /// Places of all nodes in m.
+    /// Positions of all nodes in m.
     pub fn coordinates(&self) -> Vec<[f64; 2]> {
         let row = |row: usize| {
             let (count, z) = (self.nodes_in(row), self.levels[row]);
@@ -118,7 +118,7 @@ impl Grid {
         &nodes[2 * self.first[row]..2 * self.first[row + 1]]
     }
 
-    /// The values `(x, z)` at the upper corners of a row of elements, tied ones among them.
+    /// The values `(x, z)` at the upper corners of a row of elements, including tied ones.
     pub fn upper<'a, T: Value>(&self, nodes: &'a [T], row: usize) -> Cow<'a, [T]> {
         let above = self.row(nodes, row + 1);
         if !self.coarser_above(row) {

@@ -1,11 +1,10 @@
 //! A profile that grows at constant pressure, from its longest waves to its shortest.
 //!
-//! A profile of many scales cannot be reached through small pressures: the first of its tips
-//! would carry all of the load long before the next one is touched, and end the path. Here the
-//! smooth profile of the longest waves carries the load from the start. Then one octave of
-//! shorter waves after the other grows out of it, which opens the contact where it was closed and
-//! never asks one tip for more than its share. The grid resolves the waves that are there, so the
-//! finest one is only entered at the end.
+//! A profile of many scales cannot be reached through small pressures: its highest tip would carry all of the load long
+//! before the next one is touched, and the path would end. Here the smooth profile of the longest waves carries the
+//! load from the start. Then one octave of shorter waves after the other is added with growing amplitude, so that the
+//! load is always spread over all tips. The grid resolves the waves present, so the finest grid is used only at the
+//! end.
 
 use super::super::profile::RigidProfile;
 use super::level::{Level, Surface};
@@ -13,11 +12,11 @@ use super::lift::lift;
 use super::path::Path;
 use super::{BlockOptions, NotConverged, Setting};
 
-/// Columns on the shortest wave that is there while it grows.
+/// Columns on the shortest wave present, while it grows.
 const COLUMNS_PER_WAVE: f64 = 32.0;
-/// Columns of the grid on which the longest waves are met first.
+/// Columns of the grid on which the longest waves are solved first.
 const FEWEST_COLUMNS: usize = 32;
-/// Share of an octave that grows in the first step, and the one at which growth is given up.
+/// Fraction of an octave added in the first step, and the smallest one before growth is given up.
 const FIRST_SHARE: f64 = 0.25;
 const SMALLEST_SHARE: f64 = 1e-3;
 /// Newton steps below which the next step of growth is longer.
@@ -25,7 +24,7 @@ const EASY: usize = 6;
 const LONGER: f64 = 1.25;
 const SHORTER: f64 = 0.6;
 
-/// The path at the whole profile on the wanted grid, behind the barrier.
+/// The path at the complete profile on the grid asked for, with the barrier.
 pub(super) fn grow(
     setting: &Setting,
     profile: &RigidProfile,
@@ -52,7 +51,7 @@ pub(super) fn grow(
             at = columns(next);
             path.refine(level(at, &profile.partial(waves, waves, 1.0)))?;
         }
-        // What is shorter than the shortest waves that matter grows with them.
+        // Waves shorter than the shortest that matter grow with them.
         let growing = if next < shortest { next } else { f64::INFINITY };
         grow_octave(&mut path, |share| profile.partial(waves, growing, share))?;
         waves = next;
@@ -63,11 +62,11 @@ pub(super) fn grow(
     Ok(path)
 }
 
-/// Lets the shares of an octave grow from nothing to the whole.
+/// Raises the amplitude of an octave from zero to its full value.
 fn grow_octave(path: &mut Path, profile: impl Fn(f64) -> RigidProfile) -> Result<(), NotConverged> {
     let (mut share, mut step) = (0.0_f64, FIRST_SHARE);
     while share < 1.0 {
-        // No sliver is left for the last step.
+        // The last step is not a tiny remainder.
         let next = if share + 1.2 * step < 1.0 { share + step } else { 1.0 };
         match reshape(path, &profile(next)) {
             Ok(steps) => {
@@ -87,8 +86,7 @@ fn grow_octave(path: &mut Path, profile: impl Fn(f64) -> RigidProfile) -> Result
     Ok(())
 }
 
-/// Puts another profile under the block; returns the Newton steps. Where it fails, everything stays
-/// what it was.
+/// Exchanges the profile; returns the Newton steps. If it fails, the state is unchanged.
 fn reshape(path: &mut Path, profile: &RigidProfile) -> Result<usize, NotConverged> {
     let surface = Surface::new(profile, path.level.grid().contact_nodes());
     let before = std::mem::replace(&mut path.level.surface, surface);

@@ -1,9 +1,9 @@
 //! Finer grids above the one of a path.
 //!
-//! A path takes many points, of which the exact contact at one pressure needs none on a fine grid: the
-//! exact contact of a grid, taken to one of twice the columns, is a few Newton steps from that one's. So a
-//! profile of many scales grows and is pressed on a coarse grid, and each solution climbs from there; what
-//! its last two grids say tells the error of the mesh.
+//! A path has many points, and the exact contact at one pressure needs none of them on a fine grid: the exact contact
+//! of one grid, interpolated to twice the columns, is a few Newton steps from the exact contact there. So a profile of
+//! many scales is grown and pressed on a coarse grid, and each solution is refined from there; the difference of its
+//! last two grids estimates the error of the mesh.
 
 use super::super::profile::RigidProfile;
 use super::NotConverged;
@@ -16,11 +16,11 @@ use super::transfer::transfer;
 /// Fewest columns on the shortest wave on the grid of a path.
 const FEWEST_PER_WAVE: f64 = 32.0;
 
-/// The columns of the grids, and those that have been made.
+/// The numbers of columns of the grids, and the levels made so far.
 pub(super) struct Ladder {
-    /// Of the path first, of the wanted grid last.
+    /// From the grid of the path to the finest.
     columns: Vec<usize>,
-    /// Those above the path's.
+    /// Levels above that of the path.
     levels: Vec<Level>,
 }
 
@@ -58,8 +58,8 @@ impl Ladder {
         self.levels.iter_mut().for_each(|level| level.interrupt = interrupt.clone());
     }
 
-    /// The solution on the wanted grid from the exact contact of the path and its residual, with all
-    /// that was spent since the one before; `new` makes a level of so many columns.
+    /// The solution on the finest grid from the exact contact of the path and its residual, with the work spent since
+    /// the solution before; `new` makes a level of so many columns.
     pub fn climb(
         &mut self,
         path: &mut Path,
@@ -92,8 +92,8 @@ fn tolerance(last: bool) -> f64 {
     if last { EXACT } else { EXACT_ENOUGH }
 }
 
-/// The exact contact on a finer grid and its residual: from that on the grid below, or where its edges are too far
-/// from those here, from the same behind a barrier.
+/// The exact contact on a finer grid and its residual: from that on the coarser grid, or if its edges are too far away,
+/// from the same with a barrier.
 fn raise(
     below: &mut Level,
     finer: &mut Level,

@@ -88,10 +88,10 @@ pub(super) fn set_lane<T: Lanes, const N: usize>(to: &mut [T; N], at: usize, val
 
 /// What is the same in all elements of a row: how points lie in them and are integrated.
 pub(super) struct Rule<T> {
-    /// `1 - a` and `a` of the place `(a, b)` in the unit square.
-    pub along: [T; 2],
-    /// `1 - b` and `b`.
-    pub up: [T; 2],
+    /// `1 - a` and `a` of a point `(a, b)` of the unit square: weights of the left and the right nodes.
+    pub x: [T; 2],
+    /// `1 - b` and `b`: weights of the lower and the upper nodes.
+    pub z: [T; 2],
     /// Gradient (1/m) of the shape function of each node.
     pub gradients: [[T; 2]; 4],
     /// In m².
@@ -106,8 +106,8 @@ impl<T: Lanes> Rule<T> {
         let gradient =
             |node: usize, i: usize| T::from_lanes(|at| element.gradients[first + at][node][i]);
         Self {
-            along: [T::from_lanes(|at| 1.0 - a(at)), T::from_lanes(a)],
-            up: [T::from_lanes(|at| 1.0 - b(at)), T::from_lanes(b)],
+            x: [T::from_lanes(|at| 1.0 - a(at)), T::from_lanes(a)],
+            z: [T::from_lanes(|at| 1.0 - b(at)), T::from_lanes(b)],
             gradients: [0, 1, 2, 3].map(|node| [gradient(node, 0), gradient(node, 1)]),
             weight: T::from_lanes(|at| element.weights[first + at]),
         }

@@ -6,7 +6,7 @@ use super::grid::Grid;
 use super::long::{Long, Value};
 use super::row::Validity;
 use super::state::{Heights, State};
-use super::stiffness::{Places, fix_x, pattern, touch};
+use super::stiffness::{Positions, fix_x, pattern, touch};
 use super::{BlockOptions, NotConverged, Setting};
 use crate::fem::profile::RigidProfile;
 use crate::numerics::direct::{FactorError, SparseLu};
@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 /// The contact stiffness over the modulus of the block's shortest wave.
 const STIFFNESS: f64 = 1.5;
 
-/// The profile above which the contact nodes stand.
+/// The profile at the contact nodes.
 #[derive(Debug, Clone)]
 pub(super) struct Surface {
     /// Height in m at each contact node.
@@ -29,7 +29,7 @@ impl Surface {
         let spacing = profile.period() / columns as f64;
         let points = (0..columns).map(|j| profile.at(j as f64 * spacing));
         let (heights, slopes) = points.map(|at| (at.height, at.slope)).unzip();
-        Self { heights, slopes, scale: Heights::of(profile, 8 * columns) }
+        Self { heights, slopes, scale: Heights::new(profile, 8 * columns) }
     }
 }
 
@@ -60,17 +60,17 @@ pub(super) struct Level {
     pub cost: Cost,
     /// c of the contact in Pa.
     stiffness: f64,
-    places: Places,
+    positions: Positions,
     pub factors: SparseLu,
-    /// Whether the factors belong to a state near enough.
+    /// Whether the factors belong to a state that is near enough.
     pub factored: bool,
     pub interrupt: crate::numerics::Interrupt,
-    /// Whether the way to a solution is taken with less care, for the sake of speed: on profiles of many
-    /// scales, whose grids are large and whose pressures are far from the end of a path.
+    /// Whether steps towards a solution are taken with looser tolerances, for speed: on profiles of many scales, whose
+    /// grids are large and whose pressures are far from the end of a path.
     pub in_haste: bool,
 }
 
-/// What a state leaves unbalanced.
+/// The residual of a state.
 pub(super) struct Balance {
     pub residual: Vec<f64>,
     /// Root mean square of it over the contact nodes, over the mean contact force.
@@ -84,13 +84,13 @@ impl Level {
         let grid = Grid::new(options, profile.period());
         let shortest = PI * options.columns as f64 / profile.period() * setting.speed;
         let pattern = pattern(&grid);
-        let places = Places::new(&grid, &pattern);
+        let positions = Positions::new(&grid, &pattern);
         let factors = SparseLu::analyse(pattern, &grid.coordinates());
         Self {
             surface: Surface::new(profile, options.columns),
             cost: Cost::default(),
             stiffness: STIFFNESS * setting.rubber.reduced_modulus(shortest).norm(),
-            places,
+            positions,
             factors,
             factored: false,
             interrupt: setting.interrupt.clone(),
@@ -122,7 +122,7 @@ impl Level {
         force / self.stiffness - gap
     }
 
-    /// An undeformed block above the profile, as high as the barrier carries it.
+    /// An undeformed block above the profile, at the height where the barrier carries the load.
     pub fn above(&self, pressure: f64, barrier: f64) -> State {
         let grid = self.grid();
         let heights = &self.surface.heights;
@@ -146,7 +146,7 @@ impl Level {
         State { displacements, contact: heights.iter().map(unknown).collect(), pressure }
     }
 
-    /// Puts the contact nodes at their gaps and returns what is unbalanced.
+    /// Moves the contact nodes to their gaps and returns the residual.
     pub fn balance(&mut self, state: &mut State, barrier: f64) -> Result<Balance, NotConverged> {
         let pairs = self.pairs(state, barrier);
         let gaps = pairs.gaps.iter().zip(&pairs.gap_slopes).zip(&state.contact);
@@ -181,7 +181,7 @@ impl Level {
         crate::numerics::krylov::euclidean_norm(residual) / (force * nodes.sqrt())
     }
 
-    /// The entries of the upper edge, whose x displacements are none.
+    /// The entries of the upper edge, whose x displacements are not unknowns.
     pub fn upper_edge(&self) -> std::ops::Range<usize> {
         let grid = self.grid();
         2 * grid.first_node(grid.rows())..2 * grid.nodes()
@@ -209,14 +209,14 @@ impl Level {
         forces
     }
 
-    /// Factorises the local tangent at the state that was taken over last.
+    /// Factorises the local tangent at the last deformed state.
     pub fn factorise(&mut self, pairs: &Pairs) -> Result<(), NotConverged> {
         self.factored = false;
         if self.interrupt.is_set() {
             return Err(NotConverged);
         }
         let pattern = self.factors.pattern();
-        let mut values = self.places.assemble(&self.block, pattern);
+        let mut values = self.positions.assemble(&self.block, pattern);
         let slopes = pairs.gap_slopes.iter().zip(&pairs.force_slopes).zip(&self.surface.slopes);
         let contact: Vec<[f64; 3]> =
             slopes.map(|((gap, force), slope)| [*gap, force * slope, -force]).collect();

@@ -14,7 +14,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// `|k| Z` from which nothing is left.
+/// `|k| Z` above which the displacement is zero.
 const FAR: f64 = 40.0;
 
 /// Adds the displacements of the block that belong to vertical ones of the surface in m.

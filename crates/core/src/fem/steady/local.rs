@@ -1,4 +1,4 @@
-//! The tangent of an element with a short memory: what the preconditioner factorises.
+//! The tangent of an element with a short relaxation history: what the preconditioner factorises.
 //!
 //! The internal measure of a branch depends on all points upstream. The local tangent lets it depend
 //! on the measures of its own point and of the one before, `δm_k = w δm_n + w' δm_{n-1}`, with the two
@@ -15,12 +15,12 @@
 use super::super::kinematics::Tensor;
 use super::super::mesh::{CENTRE, POINTS};
 use super::flow::Weights;
-use super::point::Memory;
+use super::point::History;
 use super::row::{Material, Row, before};
 use super::tangent::stress_change;
 use crate::rubber::finite_strain::Symmetric;
 
-/// Largest angle of a wave an element: shorter ones are not what the cubic of the flow rule follows.
+/// Largest angle a wave advances in an element: the cubic of the flow rule does not resolve shorter waves.
 const LARGEST_ANGLE: f64 = 0.9;
 
 /// Rows: `(x, z)` of the four corners of an element. Columns: the same, then those of the two left
@@ -35,7 +35,7 @@ struct Unit {
     measure: [Symmetric; 8],
 }
 
-/// Place among the columns of a corner of the element before.
+/// Column of a corner of the element before.
 const UPSTREAM: [usize; 4] = [8, 0, 10, 4];
 
 impl Row {
@@ -91,10 +91,10 @@ impl Row {
         let mut own = units.map(|unit| point.own_stress(volumetric, &unit));
         let mut upstream = [[0.0; 3]; 3];
         for k in 0..branches {
-            let memory = self.memory(kind, [k, column]);
-            let (here, there) = shares(&memory, angle);
+            let history = self.history(kind, [k, column]);
+            let (here, there) = shares(&history, angle);
             for (unit, (own, upstream)) in units.iter().zip(own.iter_mut().zip(&mut upstream)) {
-                let relief = memory.relief(volumetric, &point, unit);
+                let relief = history.relief(volumetric, &point, unit);
                 for i in 0..3 {
                     own[i] -= here * relief[i];
                     upstream[i] -= there * relief[i];
@@ -158,9 +158,9 @@ fn apply(law: &[Symmetric; 3], measure: &Symmetric) -> Symmetric {
     [0, 1, 2].map(|i| (0..3).map(|unit| law[unit][i] * measure[unit]).sum())
 }
 
-/// Shares of its own point and of the one before that a branch follows.
-fn shares(memory: &Memory, angle: f64) -> (f64, f64) {
-    let weights = Weights { decay: 1.0 - memory.forgotten, of: memory.weights };
+/// Weights of the measure at the point and at the point before in the internal measure of a branch.
+fn shares(history: &History, angle: f64) -> (f64, f64) {
+    let weights = Weights { decay: 1.0 - history.relaxed, of: history.weights };
     let response = weights.response(angle);
     let upstream = -response.im / angle.sin();
     (response.re - upstream * angle.cos(), upstream)

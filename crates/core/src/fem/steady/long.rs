@@ -1,12 +1,12 @@
-//! Sums that keep what they round off.
+//! Sums that keep their rounding error.
 //!
 //! Displacements reach a thousand element widths. Rounded to double precision they leave nodal forces of the
 //! glassy modulus unbalanced by `E u ε`, which on 4096 columns is 2e-9 of the mean contact force and grows with
-//! the columns. With the rest of each sum kept, differences of neighbours have all their digits.
+//! the columns. With the rounding error of each sum kept, differences of neighbours have all their digits.
 
 use std::ops::AddAssign;
 
-/// The unevaluated sum of a number and of what was rounded off it (Knuth's two-sum, The Art of Computer
+/// The unevaluated sum of a number and its rounding error (Knuth's two-sum, The Art of Computer
 /// Programming 2, section 4.2.2, theorem B).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Long {
@@ -28,7 +28,7 @@ impl Long {
         self.value
     }
 
-    /// What is left of the sum beside its value.
+    /// The rounding error of the sum.
     pub fn rest(self) -> f64 {
         self.rest
     }

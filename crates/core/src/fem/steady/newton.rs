@@ -6,11 +6,11 @@ use super::long::Long;
 use super::state::State;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, flexible_gmres};
 
-/// Relative accuracy of the linear solves, and the one on a level in haste as long as the residual is above
-/// the last number: the linearised law is further from the law than that.
+/// Relative accuracy of the linear solves; the looser one holds on a level in haste as long as the residual is above
+/// the last number, where the linearisation error is larger than that.
 const LINEAR_TOLERANCE: f64 = 1e-2;
 const LINEAR_TOLERANCE_IN_HASTE: (f64, f64) = (0.1, 0.05);
-/// What a level in haste multiplies the residuals of points behind a barrier by.
+/// Factor of the residuals of points with a barrier on a level in haste.
 const HASTE: f64 = 10.0;
 /// Krylov iterations beyond which factors of an earlier state are renewed, without haste and with.
 const MOST_WITH_OLD_FACTORS: [usize; 2] = [18, 12];
@@ -25,20 +25,19 @@ const MOST_HALVINGS: usize = 8;
 const STARTING_STEPS: usize = 5;
 const GROWTH: [f64; 2] = [10.0, 2.0];
 const SLIGHT: f64 = 0.1;
-/// A solve is given up where the residual is above the first number from as many steps on as the second; in haste
-/// the last two count as well, by which a step that was too long is known at once (where it was not, 33 and 12
-/// were seen on eight waves).
+/// A solve is given up if the residual is above the first number after as many steps as the second. In haste the last
+/// two numbers apply as well, to detect a step that was too long early (33 and 12 were seen on eight waves where it was
+/// not).
 const HOPELESS: [(f64, usize); 4] = [(5.0, 5), (1.0, 8), (40.0, 1), (15.0, 2)];
 const HOPELESS_WITHOUT_HASTE: usize = 2;
-/// Newton steps from one solution to the next, of all solves on the way, without haste and with: where there is
-/// no solution, ever shorter steps would look for it without end. The longest ways that are known to end in a
-/// solution take 240 and 360.
+/// Most Newton steps from one solution to the next, of all solves between them, without haste and with: without a
+/// solution, ever shorter steps would go on for ever. The longest known ways to a solution take 240 and 360.
 const MOST_SPENT: [usize; 2] = [1000, 600];
-/// Parts of det F and of A that a step must leave.
+/// Fractions of det F and of A that a step must leave.
 const LEFT_OF_VOLUME: f64 = 0.2;
 const LEFT_OF_LABEL: f64 = 0.1;
 
-/// What a solve is asked for.
+/// What a solve is to reach.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target {
     pub pressure: f64,
@@ -50,8 +49,7 @@ pub(super) struct Target {
 }
 
 impl Level {
-    /// Takes a state to the target; returns the Newton steps and the residual. Where it fails, the
-    /// state stays what it was.
+    /// Takes a state to the target; returns the Newton steps and the residual. If it fails, the state is unchanged.
     pub fn solve(
         &mut self,
         state: &mut State,

@@ -1,4 +1,4 @@
-//! From a slight contact to the wanted pressure, and from the barrier to the exact contact.
+//! From a slight contact to a pressure, and from the barrier to the exact contact.
 
 use super::NotConverged;
 use super::level::{Cost, Level};
@@ -11,12 +11,12 @@ pub(super) const BARRIER: f64 = 3e-2;
 
 /// Barrier with which a block is put above the profile.
 const FIRST_BARRIER: f64 = 0.3;
-/// Residual of a point behind the barrier, and of a solution.
+/// Residual of a point with the barrier, and of a solution.
 const LOOSE: f64 = 1e-2;
 pub(super) const EXACT: f64 = 1e-9;
 /// Residual of an exact contact that a finer grid starts from.
 pub(super) const EXACT_ENOUGH: f64 = 1e-5;
-/// Newton steps of a point on a path, of the first one, on a new grid, and to the exact contact.
+/// Most Newton steps for a point of a path, for the first one, on a new grid, and to the exact contact.
 const MOST_STEPS: usize = 14;
 const MOST_FIRST_STEPS: usize = 20;
 const MOST_STEPS_ON_NEW_GRID: usize = 25;
@@ -47,7 +47,7 @@ const LONGER: f64 = 1.5;
 /// Attempts at the exact contact, each from a smaller barrier.
 const MOST_CLOSINGS: usize = 6;
 
-/// A level with a state behind the barrier.
+/// A level with a state under the barrier.
 pub(super) struct Path {
     pub level: Level,
     pub state: State,
@@ -56,7 +56,7 @@ pub(super) struct Path {
     passed: Vec<State>,
     /// The exact contact found last.
     exact: Option<State>,
-    /// Step in ln p from one exact contact to the next that went well last.
+    /// The last successful step in ln p from one exact contact to the next.
     step: f64,
 }
 
@@ -207,7 +207,7 @@ impl Path {
         Some((state, residual))
     }
 
-    /// Takes a state that is nearly in exact contact among those passed, since the path goes on from the nearest one.
+    /// Adds a state that is nearly in exact contact to those passed, since the path continues from the nearest one.
     fn keep_behind_barrier(&mut self, state: State) {
         if let Ok(opened) = open(&mut self.level, state) {
             self.passed.push(opened);
@@ -225,7 +225,7 @@ impl Path {
         }
     }
 
-    /// Goes back to where the path was on the same grid; what was spent since is forgotten.
+    /// Goes back to where the path was on the same grid; the work spent since is not counted.
     pub fn return_to(&mut self, place: Place) {
         let Place { state, ratio, passed, exact, step } = place;
         (self.state, self.ratio, self.passed, self.exact, self.step) =
@@ -233,7 +233,7 @@ impl Path {
         self.level.cost = Cost::default();
     }
 
-    /// All that was spent since the last time.
+    /// The work spent since the last call.
     pub fn take_cost(&mut self) -> Cost {
         std::mem::take(&mut self.level.cost)
     }

@@ -13,11 +13,10 @@ use super::super::kinematics::{Tensor, green_strain, strain_change};
 use super::Inverted;
 use super::lanes::{Lanes, lane, set_lane};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, IDENTITY, Measure, Rheology, Scalar, Spring, Symmetric, contract,
-    dilatation, inverse, one_plus, sandwich,
+    FiniteStrainRubber, Measure, Scalar, Spring, Symmetric, contract, sandwich,
 };
 
-/// Smallest `A` and `Q` of an element that is taken for valid.
+/// Smallest `A` and `Q` of a valid element.
 const LEAST: f64 = 1e-3;
 
 /// Deformation and stress at a point, and the coefficients of its own measure in the linearised law:
@@ -27,9 +26,9 @@ const LEAST: f64 = 1e-3;
 /// volumetric  δT = (c G:δm - Σ_k c_k G_k:δm_k) G - σ G δm G
 /// ```
 ///
-/// with `G = C⁻¹` and `G_k = C_k⁻¹` under neo-Hooke; under the linear law both are unit tensors and
-/// σ vanishes. Forces follow in double precision; what a row keeps for its tangent is in single
-/// precision: it makes directions, not solutions.
+/// with `G`, `c_k = Λ_k/2 V/V_k` and `σ = Σ_k (c_k - Λ_k/2)` of the law ([`metric`](crate::rubber::Rheology::metric)).
+/// Forces follow in double precision; what a row keeps for its tangent is in single precision, since it determines
+/// directions, not solutions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Point<T = f64> {
     /// A and B.
@@ -47,11 +46,11 @@ pub(super) struct Point<T = f64> {
 
 /// A branch at a point: its part in the linearised law and the flow rule up to the point.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Memory<T = f64> {
-    /// `√μ_k G_k` or `c_k G_k`: with its modulus in it, a branch takes less space.
+pub(super) struct History<T = f64> {
+    /// `√μ_k G_k` or `c_k G_k`: scaled by its modulus, which saves space.
     pub metric: [T; 3],
-    /// `1 - e^{-a}`: what is forgotten from the point before.
-    pub forgotten: T,
+    /// `1 - e^{-a}`: the fraction by which the branch relaxes from the point before.
+    pub relaxed: T,
     /// Weights of the measures at `n-2` to `n+1`.
     pub weights: [T; 4],
     /// Change of the internal measure by that of the distance from the point before, in 1/m.
@@ -59,7 +58,7 @@ pub(super) struct Memory<T = f64> {
 }
 
 impl Point {
-    /// Takes over the gradient `(q_s, q_Z, w_s, w_Z)`; returns the strain `C - 1`, which keeps the
+    /// Sets the gradient `(q_s, q_Z, w_s, w_Z)`; returns the strain `C - 1`, which keeps the
     /// digits of small strains.
     #[inline]
     pub fn deform(&mut self, gradient: &Tensor) -> Result<Symmetric, Inverted> {
@@ -100,7 +99,7 @@ impl<T: Scalar> Point<T> {
         strain_change(&self.deformation, df)
     }
 
-    /// Change of the stress that the point's own measure makes, if no branch followed.
+    /// Change of the stress with the measure at the point if no branch relaxed.
     #[inline]
     pub fn own_stress(&self, volumetric: bool, measure: &[T; 3]) -> [T; 3] {
         let congruent = sandwich(&self.metric, measure);
@@ -146,7 +145,7 @@ impl<T: Lanes> Point<T> {
     }
 }
 
-impl<T: Scalar> Memory<T> {
+impl<T: Scalar> History<T> {
     /// What the measures at `n-2` to `n+1` and the distance from the point before, which is shorter
     /// by `shift`, add to the internal measure.
     #[inline]
@@ -163,7 +162,7 @@ impl<T: Scalar> Memory<T> {
     /// The internal measure after that of the point before.
     #[inline]
     pub fn step(&self, before: &[T; 3], input: &[T; 3]) -> [T; 3] {
-        [0, 1, 2].map(|i| before[i] + (input[i] - self.forgotten * before[i]))
+        [0, 1, 2].map(|i| before[i] + (input[i] - self.relaxed * before[i]))
     }
 
     /// The stress that a change of the internal measure takes away.
@@ -178,21 +177,21 @@ impl<T: Scalar> Memory<T> {
     }
 }
 
-impl<T: Lanes> Memory<T> {
-    pub fn lane(&self, at: usize) -> Memory {
-        Memory {
+impl<T: Lanes> History<T> {
+    pub fn lane(&self, at: usize) -> History {
+        History {
             metric: lane(&self.metric, at),
-            forgotten: self.forgotten.lane(at),
+            relaxed: self.relaxed.lane(at),
             weights: lane(&self.weights, at),
             source: lane(&self.source, at),
         }
     }
 
-    pub fn set_lane(&mut self, at: usize, memory: &Memory) {
-        set_lane(&mut self.metric, at, &memory.metric);
-        self.forgotten.set_lane(at, memory.forgotten);
-        set_lane(&mut self.weights, at, &memory.weights);
-        set_lane(&mut self.source, at, &memory.source);
+    pub fn set_lane(&mut self, at: usize, history: &History) {
+        set_lane(&mut self.metric, at, &history.metric);
+        self.relaxed.set_lane(at, history.relaxed);
+        set_lane(&mut self.weights, at, &history.weights);
+        set_lane(&mut self.source, at, &history.source);
     }
 }
 
@@ -211,7 +210,7 @@ impl Law<'_> {
         measure: &Symmetric,
     ) -> Result<Symmetric, Inverted> {
         let spring = &self.rubber.equilibrium;
-        let (metric, volume) = metric(self.rubber.rheology, measure)?;
+        let (metric, volume) = self.rubber.rheology.metric(measure).ok_or(Inverted)?;
         point.metric = metric;
         point.modulus = self.modulus(spring, volume);
         point.pressure = self.pressure(spring, volume);
@@ -225,28 +224,26 @@ impl Law<'_> {
         &self,
         spring: &Spring,
         point: &mut Point,
-        memory: &mut Memory,
+        history: &mut History,
         tensors: [&Symmetric; 3],
         stress: &mut Symmetric,
     ) -> Result<(), Inverted> {
         let [measure, internal, _] = tensors;
-        let (metric, past) = metric(self.rubber.rheology, internal)?;
-        let volume = match self.rubber.rheology {
-            Rheology::NeoHookean => (1.0 + dilatation(measure)) / past,
-            Rheology::Linear => 1.0,
-        };
+        let rheology = self.rubber.rheology;
+        let (metric, past) = rheology.metric(internal).ok_or(Inverted)?;
+        let volume = rheology.volume(measure) / past;
         let modulus = self.modulus(spring, volume);
         let factor = if self.volumetric {
             modulus
         } else {
             if modulus < 0.0 {
-                // The metric stands twice in a relief, so the sign goes to what is remembered.
-                memory.weights = memory.weights.map(|weight| -weight);
-                memory.source = memory.source.map(|source| -source);
+                // The metric occurs twice in a relief, so the sign goes to the history.
+                history.weights = history.weights.map(|weight| -weight);
+                history.source = history.source.map(|source| -source);
             }
             modulus.abs().sqrt()
         };
-        memory.metric = metric.map(|g| factor * g);
+        history.metric = metric.map(|g| factor * g);
         point.modulus += modulus;
         point.pressure += self.pressure(spring, volume);
         let part = self.stress(spring, tensors);
@@ -268,21 +265,6 @@ impl Law<'_> {
 
     fn pressure(&self, spring: &Spring, volume: f64) -> f64 {
         if self.volumetric { 0.5 * spring.volumetric * (volume - 1.0) } else { 0.0 }
-    }
-}
-
-/// `G` and the determinant of `1 + measure`, which must be positive definite; of the linear law,
-/// unit tensor and 1.
-#[inline]
-fn metric(rheology: Rheology, measure: &Symmetric) -> Result<(Symmetric, f64), Inverted> {
-    if rheology == Rheology::Linear {
-        return Ok((IDENTITY, 1.0));
-    }
-    let volume = 1.0 + dilatation(measure);
-    if volume > 0.0 && measure[0] > -1.0 {
-        Ok((inverse(&one_plus(measure)), volume))
-    } else {
-        Err(Inverted)
     }
 }
 

@@ -1,19 +1,19 @@
 //! One row of elements: its forces, and the tangent with its relaxation history.
 //!
 //! The internal measure of a branch at a point follows from the measures of the points of the same
-//! kind in all elements of the row, so a row is the smallest piece whose forces follow from its
-//! displacements.
+//! kind in all elements of the row, so a row is the smallest part whose forces depend on its displacements alone.
 
 use super::super::mesh::{CENTRE, Element, POINTS};
 use super::Inverted;
-use super::flow::{Relaxation, Weights, window};
+use super::flow::Relaxation;
 use super::lanes::{Lanes, Rule};
 use super::long::Value;
-use super::point::{Conversion, Law, Memory, Point};
-use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric, difference};
+use super::passage::{Line, relax};
+use super::point::{Conversion, History, Law, Point};
+use crate::rubber::finite_strain::{FiniteStrainRubber, Rheology, Scalar, Symmetric};
 use wide::f64x4;
 
-/// What all rows share: the rubber and its memory at one speed.
+/// What all rows share: the rubber and the lengths in which its branches relax at one speed.
 #[derive(Debug, Clone)]
 pub(super) struct Material {
     pub rubber: FiniteStrainRubber,
@@ -44,14 +44,14 @@ pub(super) struct Linearised<T> {
     /// One a column.
     pub points: Vec<Point<T>>,
     /// One branch after another, columns first.
-    pub memory: Vec<Memory<T>>,
+    pub history: Vec<History<T>>,
 }
 
 impl<T: Lanes> Linearised<T> {
     fn new(columns: usize, branches: usize) -> Self {
         Self {
             points: vec![Point::default(); columns],
-            memory: vec![Memory::default(); branches * columns],
+            history: vec![History::default(); branches * columns],
         }
     }
 }
@@ -67,7 +67,7 @@ pub(super) struct Row {
     /// At the Gauss points.
     pub gauss: Linearised<f64x4>,
     pub centre: Linearised<f64>,
-    /// One kind of points after another, columns first; under the linear law alone.
+    /// One kind of points after another, columns first; for laws that are not in `C - 1` alone.
     pub conversions: Vec<Conversion>,
 }
 
@@ -78,7 +78,7 @@ pub(super) struct Differences {
     /// From the left to the right upper corner.
     upper: Vec<[f64; 2]>,
     /// From the lower to the upper left corner.
-    across: Vec<[f64; 2]>,
+    left: Vec<[f64; 2]>,
 }
 
 impl Differences {
@@ -90,20 +90,14 @@ impl Differences {
                 row.iter().zip(right).map(|(left, right)| right.minus(*left)).collect();
             differences.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
         };
-        let across = upper.chunks_exact(2).zip(lower.chunks_exact(2));
-        let across = across.map(|(upper, lower)| [0, 1].map(|i| upper[i].minus(lower[i])));
-        Self { lower: along(lower), upper: along(upper), across: across.collect() }
+        let left = upper.chunks_exact(2).zip(lower.chunks_exact(2));
+        let left = left.map(|(upper, lower)| [0, 1].map(|i| upper[i].minus(lower[i])));
+        Self { lower: along(lower), upper: along(upper), left: left.collect() }
     }
 }
 
-/// Measures of a kind of points and the distances of their labels from the points before.
-struct Line {
-    measures: Vec<Symmetric>,
-    spacings: Vec<f64>,
-}
-
 impl Row {
-    /// A row that has taken over no displacements yet; period and height of an element in m.
+    /// A row without displacements yet; period and height of an element in m.
     pub fn new(
         element: Element,
         columns: usize,
@@ -111,7 +105,7 @@ impl Row {
         material: &Material,
     ) -> Self {
         let points = POINTS * columns;
-        let converted = material.rubber.rheology == Rheology::Linear;
+        let converted = !material.rubber.rheology.is_in_green_strain();
         Self {
             element,
             width: period / columns as f64,
@@ -123,7 +117,7 @@ impl Row {
         }
     }
 
-    /// Takes over the displacements and returns the internal forces in N/m at the corners.
+    /// Sets the displacements and returns the internal forces in N/m at the corners.
     ///
     /// # Errors
     /// [`Inverted`]; the state of the row is then meaningless.
@@ -166,12 +160,12 @@ impl Row {
         }
     }
 
-    fn keep_memory(&mut self, kind: usize, [branch, column]: [usize; 2], memory: &Memory) {
+    fn keep_history(&mut self, kind: usize, [branch, column]: [usize; 2], history: &History) {
         let at = branch * self.columns + column;
         if kind == CENTRE {
-            self.centre.memory[at].set_lane(0, memory);
+            self.centre.history[at].set_lane(0, history);
         } else {
-            self.gauss.memory[at].set_lane(kind, memory);
+            self.gauss.history[at].set_lane(kind, history);
         }
     }
 
@@ -185,12 +179,12 @@ impl Row {
     }
 
     /// A branch at a point as the tangent knows it.
-    pub fn memory(&self, kind: usize, [branch, column]: [usize; 2]) -> Memory {
+    pub fn history(&self, kind: usize, [branch, column]: [usize; 2]) -> History {
         let at = branch * self.columns + column;
         if kind == CENTRE {
-            self.centre.memory[at].lane(0)
+            self.centre.history[at].lane(0)
         } else {
-            self.gauss.memory[at].lane(kind)
+            self.gauss.history[at].lane(kind)
         }
     }
 
@@ -233,13 +227,13 @@ impl Row {
         let Differences { lower, upper, .. } = differences;
         let along = |column: usize| {
             let (lower, upper) = (T::splat(lower[column][0]), T::splat(upper[column][0]));
-            rule.up[0] * lower + rule.up[1] * upper
+            rule.z[0] * lower + rule.z[1] * upper
         };
         let mut before = along(self.columns - 1);
         (0..self.columns)
             .map(|column| {
                 let here = along(column);
-                let shift = rule.along[0] * before + rule.along[1] * here;
+                let shift = rule.x[0] * before + rule.x[1] * here;
                 before = here;
                 shift
             })
@@ -255,13 +249,13 @@ impl Row {
         column: usize,
     ) -> [T; 4] {
         let right = if column + 1 == self.columns { 0 } else { column + 1 };
-        let Differences { lower, upper, across } = differences;
+        let Differences { lower, upper, left } = differences;
         let between = |weights: &[T; 2], from: &[f64; 2], to: &[f64; 2]| {
             [0, 1].map(|i| weights[0] * T::splat(from[i]) + weights[1] * T::splat(to[i]))
         };
         let (width, height) = (T::splat(self.width), T::splat(self.height));
-        let along = between(&rule.up, &lower[column], &upper[column]).map(|d| d / width);
-        let up = between(&rule.along, &across[column], &across[right]).map(|d| d / height);
+        let along = between(&rule.z, &lower[column], &upper[column]).map(|d| d / width);
+        let up = between(&rule.x, &left[column], &left[right]).map(|d| d / height);
         [along[0], up[0], along[1], up[1]]
     }
 
@@ -283,22 +277,21 @@ impl Row {
         {
             let mut valid = Ok(());
             relax(relaxation, line, |column, passage| {
-                let mut memory = passage.memory(relaxation.length);
+                let mut history = passage.history(relaxation.length);
                 let tensors = [&line.measures[column], &passage.after, &passage.lag];
                 let (point, stress) = (&mut points[column], &mut stresses[column]);
-                let added = law.branch(spring, point, &mut memory, tensors, stress);
+                let added = law.branch(spring, point, &mut history, tensors, stress);
                 if added.is_err() {
                     valid = added;
                 }
-                self.keep_memory(kind, [k, column], &memory);
+                self.keep_history(kind, [k, column], &history);
             });
             valid?;
         }
         Ok(stresses)
     }
 
-    /// Power in W/m that the branches turn into heat in the state that was taken over last, at its
-    /// displacements.
+    /// Power in W/m that the branches turn into heat in the last deformed state, at its displacements.
     pub fn dissipation(&self, material: &Material, differences: &Differences) -> f64 {
         let mut power = 0.0;
         for kind in 0..POINTS {
@@ -330,74 +323,6 @@ impl Row {
     }
 }
 
-/// The internal measure from one point to the next.
-struct Passage<'a> {
-    weights: &'a (Weights, Weights),
-    measures: [Symmetric; 4],
-    before: Symmetric,
-    after: Symmetric,
-    /// The measure less the internal one after it.
-    lag: Symmetric,
-}
-
-impl Passage<'_> {
-    /// What the tangent needs of the flow rule.
-    fn memory(&self, length: f64) -> Memory {
-        let (weights, slopes) = self.weights;
-        Memory {
-            forgotten: 1.0 - weights.decay,
-            weights: weights.of,
-            source: step(slopes, &self.before, &self.measures).map(|source| source / length),
-            ..Memory::default()
-        }
-    }
-}
-
-#[inline]
-fn step(weights: &Weights, before: &Symmetric, measures: &[Symmetric; 4]) -> Symmetric {
-    [0, 1, 2].map(|i| {
-        let of: f64 = (0..4).map(|k| weights.of[k] * measures[k][i]).sum();
-        weights.decay * before[i] + of
-    })
-}
-
-/// Follows the flow rule of a branch over the period.
-fn relax(relaxation: &Relaxation, line: &Line, mut visit: impl FnMut(usize, &Passage<'_>)) {
-    let weights: Vec<(Weights, Weights)> = line
-        .spacings
-        .iter()
-        .map(|spacing| Weights::with_slopes(spacing / relaxation.length))
-        .collect();
-    let mut state = [0.0; 3];
-    let start = relaxation.start(&line.spacings);
-    for (column, weights) in weights.iter().enumerate().skip(start) {
-        state = step(&weights.0, &state, &window(&line.measures, column));
-    }
-    let whole = relaxation.whole_period();
-    let last = line.measures[line.measures.len() - 1];
-    let mut lag = [0, 1, 2].map(|i| last[i] - state[i] / whole);
-    for (column, weights) in weights.iter().enumerate() {
-        let measures = window(&line.measures, column);
-        let before = difference(&measures[1], &lag);
-        lag = follow(&weights.0, &lag, &measures);
-        let after = difference(&measures[2], &lag);
-        visit(column, &Passage { weights, measures, before, after, lag });
-    }
-}
-
-/// What the measure is ahead of the internal one at the next point. As a difference of the two it would have the
-/// round-off of both, which the glassy modulus of a branch that follows nearly at once turns into a force as
-/// large as 1e-9 of the contact's on 8192 columns.
-#[inline]
-fn follow(weights: &Weights, lag: &Symmetric, measures: &[Symmetric; 4]) -> Symmetric {
-    let [w0, w1, _, w3] = weights.of;
-    [0, 1, 2].map(|i| {
-        let [m0, m1, m2, m3] = measures.map(|measure| measure[i]);
-        let less = m2 - m1;
-        weights.decay * (lag[i] + less) + (w0 * (m2 - m0) + w1 * less + w3 * (m2 - m3))
-    })
-}
-
 /// The column before, periodic.
 #[inline]
 pub(super) fn before(column: usize, columns: usize) -> usize {
@@ -425,44 +350,5 @@ pub(super) fn scatter<T: Lanes>(
         let force = &mut forces[node / 2][at..at + 2];
         force[0] += (rule.weight * (stress[0] * *along + stress[1] * *up)).sum();
         force[1] += (rule.weight * (stress[2] * *along + stress[3] * *up)).sum();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lags do not know the mean of the measures. As differences of two strains they would, by 1e-16 of it: for a
-    /// branch that follows within 1e-5 of a point, 1e-8 of the lag.
-    #[test]
-    fn lags_of_fast_branches_keep_their_digits_beside_a_large_strain() {
-        let columns = 64;
-        let lags = |mean: f64, length: f64| -> Vec<Symmetric> {
-            // Multiples of 2^-30, so that a mean of 4096 changes no digit of them.
-            let digit = 2_f64.powi(-30);
-            let measure = |n: usize| {
-                let angle = std::f64::consts::TAU * n as f64 / columns as f64;
-                let value = (1e-3 * angle.sin() / digit).round() * digit;
-                [mean + value, mean - value, mean + 2.0 * value]
-            };
-            let line = Line {
-                measures: (0..columns).map(measure).collect(),
-                spacings: vec![1.0 / columns as f64; columns],
-            };
-            let mut lags = Vec::new();
-            relax(&Relaxation { length, period: 1.0 }, &line, |_, passage| lags.push(passage.lag));
-            lags
-        };
-        for length in [1e-7, 1e-5] {
-            let (still, sheared) = (lags(0.0, length), lags(4096.0, length));
-            let largest = still.iter().map(|lag| lag[0].abs()).fold(0.0, f64::max);
-            // The first points still know the round-off they began with.
-            for (still, sheared) in still.iter().zip(&sheared).skip(4) {
-                for i in 0..3 {
-                    let difference = (still[i] - sheared[i]).abs();
-                    assert!(difference < 1e-13 * largest, "{length}: {still:?} {sheared:?}");
-                }
-            }
-        }
     }
 }

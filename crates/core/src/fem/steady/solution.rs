@@ -1,4 +1,4 @@
-//! A solved contact and what is read from it.
+//! A solved contact and the quantities read from it.
 
 use super::level::Level;
 use super::state::State;
@@ -29,7 +29,7 @@ pub struct SteadySolution {
     pub krylov_iterations: usize,
     /// Columns and rows of the mesh.
     pub elements: [usize; 2],
-    /// What half the columns say, where the solution was reached from there.
+    /// The same contact on half the columns, if the solution was refined from there.
     pub coarser: Option<Coarser>,
     /// The contact nodes.
     pub nodes: Vec<ContactNode>,
@@ -95,7 +95,7 @@ impl SteadySolution {
         }
     }
 
-    /// The solution with what a coarser grid says.
+    /// The solution with that on a coarser grid.
     pub(super) fn above(self, coarser: &Self) -> Self {
         let &Self { friction_coefficient, contact_area_fraction, .. } = coarser;
         Self { coarser: Some(Coarser { friction_coefficient, contact_area_fraction }), ..self }

@@ -42,7 +42,7 @@ pub(super) struct Heights {
 }
 
 impl Heights {
-    pub fn of(profile: &RigidProfile, points: usize) -> Self {
+    pub fn new(profile: &RigidProfile, points: usize) -> Self {
         let heights = profile.sample(points);
         let mean = heights.iter().sum::<f64>() / points as f64;
         let pieces = profile.shortest_waves();

@@ -6,9 +6,9 @@ use super::local::Local;
 use crate::numerics::direct::{self, BlockPattern};
 use rayon::prelude::*;
 
-/// Where the local tangents of a grid's elements go in a sparse matrix of one block a pair of nodes.
+/// Positions of the local tangents of the elements in a sparse matrix with one block for each pair of nodes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Places(Vec<u32>);
+pub(super) struct Positions(Vec<u32>);
 
 /// A corner of an element or of the one before: one node, or the middle between two.
 ///
@@ -71,23 +71,23 @@ pub(super) fn pattern(grid: &Grid) -> BlockPattern {
     BlockPattern::from_couplings(grid.nodes(), &couplings)
 }
 
-impl Places {
+impl Positions {
     pub fn new(grid: &Grid, pattern: &BlockPattern) -> Self {
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         each_element(grid, |row, column| {
             pairs(&corners(grid, row, column), |_, [r, c], _| {
-                let place = pattern.position(r, c).expect("the pattern is made of these pairs");
-                places.push(place as u32);
+                let position = pattern.position(r, c).expect("the pattern is made of these pairs");
+                positions.push(position as u32);
             });
         });
-        Self(places)
+        Self(positions)
     }
 
     /// The matrix of the block's local tangents, x and z of a node together.
     pub fn assemble(&self, block: &Block, pattern: &BlockPattern) -> Vec<direct::Block> {
         let grid = &block.grid;
         let mut values = vec![[[0.0; 2]; 2]; pattern.blocks()];
-        let mut places = self.0.iter();
+        let mut positions = self.0.iter();
         for (r, row) in block.rows().iter().enumerate() {
             let depth = 0.5 * (grid.levels[r] + grid.levels[r + 1]);
             let columns = (0..row.columns).into_par_iter().with_min_len(32);
@@ -95,8 +95,8 @@ impl Places {
                 columns.map(|column| row.local(&block.material, depth, column)).collect();
             for (column, local) in locals.iter().enumerate() {
                 pairs(&corners(grid, r, column), |[i, j], _, weight| {
-                    let Some(place) = places.next() else { return };
-                    let value = &mut values[*place as usize];
+                    let Some(position) = positions.next() else { return };
+                    let value = &mut values[*position as usize];
                     for x in 0..2 {
                         for y in 0..2 {
                             value[x][y] += weight * local[2 * i + x][2 * j + y];
@@ -109,13 +109,13 @@ impl Places {
     }
 }
 
-/// Puts contact unknowns in place of the z displacements of the lowest nodes: multiplies their columns
+/// Replaces the z displacements of the lowest nodes by the contact unknowns: multiplies their columns
 /// by the first factor and adds the other two to x and z of the node's own rows.
 pub(super) fn touch(pattern: &BlockPattern, values: &mut [direct::Block], nodes: &[[f64; 3]]) {
     for row in 0..pattern.nodes() {
-        for (place, column) in (pattern.start(row)..).zip(pattern.row(row)) {
+        for (position, column) in (pattern.start(row)..).zip(pattern.row(row)) {
             let Some([gap, along, up]) = nodes.get(*column as usize) else { continue };
-            let value = &mut values[place];
+            let value = &mut values[position];
             value[0][1] *= gap;
             value[1][1] *= gap;
             if *column as usize == row {
@@ -126,7 +126,7 @@ pub(super) fn touch(pattern: &BlockPattern, values: &mut [direct::Block], nodes:
     }
 }
 
-/// Puts an equation for x alone, with the given diagonal, in place of those of the nodes from `first` on.
+/// Replaces the equations of the nodes from `first` on by one for x alone, with the given diagonal.
 pub(super) fn fix_x(
     pattern: &BlockPattern,
     values: &mut [direct::Block],
@@ -134,8 +134,8 @@ pub(super) fn fix_x(
     diagonal: f64,
 ) {
     for row in 0..pattern.nodes() {
-        for (place, column) in (pattern.start(row)..).zip(pattern.row(row)) {
-            let (column, value) = (*column as usize, &mut values[place]);
+        for (position, column) in (pattern.start(row)..).zip(pattern.row(row)) {
+            let (column, value) = (*column as usize, &mut values[position]);
             if row >= first {
                 value[0] = [0.0; 2];
             }

@@ -6,7 +6,7 @@
 use super::super::mesh::CENTRE;
 use super::flow::Relaxation;
 use super::lanes::{Lanes, Rule, lane, set_lane};
-use super::point::{Memory, Point};
+use super::point::{History, Point};
 use super::row::{Differences, Linearised, Material, Row, nodal, scatter};
 use crate::rubber::finite_strain::{Scalar, Symmetric};
 
@@ -16,7 +16,7 @@ struct Changes<T> {
     /// Those of the last two columns first, that of the first column again behind the last one: what
     /// the flow rule sees of a periodic row.
     measures: Vec<[T; 3]>,
-    /// By which the distances of the labels get shorter.
+    /// Decrease of the distances of the labels.
     shifts: Vec<T>,
     stresses: Vec<[T; 3]>,
 }
@@ -40,9 +40,9 @@ impl Row {
     ) {
         let rule = Rule::new(&self.element, first);
         let mut changes = self.changes(differences, &rule, (first, law));
-        let branches = law.memory.chunks_exact(self.columns);
-        for (relaxation, memory) in material.relaxations.iter().zip(branches) {
-            changes.relax(relaxation, memory, &law.points, first == CENTRE);
+        let branches = law.history.chunks_exact(self.columns);
+        for (relaxation, history) in material.relaxations.iter().zip(branches) {
+            changes.relax(relaxation, history, &law.points, first == CENTRE);
         }
         let made = changes.gradients.iter().zip(&changes.stresses);
         for (column, (point, (gradient, conjugate))) in law.points.iter().zip(made).enumerate() {
@@ -53,7 +53,7 @@ impl Row {
         }
     }
 
-    /// Changes of deformation and measure, and of the stresses if no branch followed.
+    /// Changes of deformation and measure, and of the stresses if no branch relaxed.
     fn changes<T: Lanes>(
         &self,
         differences: &Differences,
@@ -120,45 +120,45 @@ fn by_lane<T: Lanes>(value: impl Fn(usize) -> Symmetric) -> [T; 3] {
 }
 
 impl<T: Lanes> Changes<T> {
-    /// Takes from the stresses what a branch relieves them of.
+    /// Subtracts the relief by a branch from the stresses.
     fn relax(
         &mut self,
         relaxation: &Relaxation,
-        memory: &[Memory<T>],
+        history: &[History<T>],
         points: &[Point<T>],
         volumetric: bool,
     ) {
         let windows = self.measures.array_windows().zip(&self.shifts);
-        let inputs: Vec<[T; 3]> = memory
+        let inputs: Vec<[T; 3]> = history
             .iter()
             .zip(windows)
-            .map(|(memory, (measures, shift))| memory.input(measures, *shift))
+            .map(|(history, (measures, shift))| history.input(measures, *shift))
             .collect();
-        let start = start(memory);
-        let steps = memory[start..].iter().zip(&inputs[start..]);
+        let start = start(history);
+        let steps = history[start..].iter().zip(&inputs[start..]);
         let mut state =
-            steps.fold([T::default(); 3], |state, (memory, input)| memory.step(&state, input));
+            steps.fold([T::default(); 3], |state, (history, input)| history.step(&state, input));
         if start == 0 {
             let periods = T::splat(1.0 / relaxation.whole_period());
             state = state.map(|y| y * periods);
         }
-        let columns = memory.iter().zip(&inputs).zip(points.iter().zip(&mut self.stresses));
-        for ((memory, input), (point, stress)) in columns {
-            state = memory.step(&state, input);
-            let relief = memory.relief(volumetric, point, &state);
+        let columns = history.iter().zip(&inputs).zip(points.iter().zip(&mut self.stresses));
+        for ((history, input), (point, stress)) in columns {
+            state = history.step(&state, input);
+            let relief = history.relief(volumetric, point, &state);
             (0..3).for_each(|i| stress[i] = stress[i] - relief[i]);
         }
     }
 }
 
-/// What is left of a change is below the accuracy of a direction from here on.
+/// Beyond this a change has decayed below the accuracy of a direction.
 const FORGOTTEN: f64 = 1e-9;
 
-/// First point of a sweep that ends at the last one with what the row has put into it.
-fn start<T: Lanes>(memory: &[Memory<T>]) -> usize {
+/// First point of a sweep whose state at the last point depends on the row alone.
+fn start<T: Lanes>(history: &[History<T>]) -> usize {
     let mut left = T::splat(1.0);
-    let start = memory.iter().rposition(|memory| {
-        left = left - memory.forgotten * left;
+    let start = history.iter().rposition(|history| {
+        left = left - history.relaxed * left;
         (0..T::COUNT).all(|at| left.lane(at) < FORGOTTEN)
     });
     start.unwrap_or(0)

@@ -137,8 +137,8 @@ fn the_tangent_is_the_derivative_of_the_forces() {
 
 /// With branches that follow at once or not at all the local tangent is the whole one.
 #[test]
-fn the_local_tangent_is_exact_without_a_memory() {
-    use super::stiffness::{Places, pattern};
+fn the_local_tangent_is_exact_without_relaxation_history() {
+    use super::stiffness::{Positions, pattern};
     let rubber = Rubber::elastic(4e6, 0.49);
     for law in [Rheology::NeoHookean, Rheology::Linear] {
         let mut block = block(&rubber, law, &BlockOptions::new(12), 0.01);
@@ -150,7 +150,7 @@ fn the_local_tangent_is_exact_without_a_memory() {
         let (at, direction) = (random(0.2), random(1.0));
         block.deform(&long(&at)).unwrap();
         let pattern = pattern(&block.grid);
-        let values = Places::new(&block.grid, &pattern).assemble(&block, &pattern);
+        let values = Positions::new(&block.grid, &pattern).assemble(&block, &pattern);
         let mut product = vec![0.0; count];
         pattern.multiply(&values, &direction, &mut product);
         let expected = block.tangent(&direction);

@@ -38,8 +38,7 @@ pub(super) fn transfer(state: &State, barrier: f64, from: &Level, to: &Level) ->
     State { displacements, contact: (0..fine).map(unknown).collect(), pressure: state.pressure }
 }
 
-/// The rows around a height and their weights in the polynomial through them (Lagrange); a row
-/// that is met exactly stands alone.
+/// The rows around a height and their weights in the polynomial through them (Lagrange); at a row exactly, that row alone.
 fn stencil(rows: &[f64], height: f64) -> Vec<(usize, f64)> {
     let near = |z: f64| (z - height).abs() < 1e-9 * rows[rows.len() - 1];
     if let Some(row) = rows.iter().position(|z| near(*z)) {

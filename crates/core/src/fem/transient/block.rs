@@ -22,11 +22,11 @@ pub struct Linearised {
     pub stiffness: Stiffness,
 }
 
-/// An element is turned inside out, or an internal tensor is not positive.
+/// An element is inverted, or an internal tensor is not positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inverted;
 
-/// The rubber block with its memory at the end of the last step.
+/// The rubber block with its relaxation history at the end of the last step.
 #[derive(Debug, Clone)]
 pub struct TransientBlock {
     mesh: Mesh,
@@ -38,11 +38,11 @@ pub struct TransientBlock {
     internal: Vec<Symmetric>,
 }
 
-/// What the past contributes to the internal tensors at the end of a step.
+/// Contribution of the relaxation history to the internal tensors at the end of a step.
 #[derive(Debug, Clone)]
 pub struct History {
     steps: Vec<FlowStep>,
-    follows: Vec<f64>,
+    fractions: Vec<f64>,
     internal: Vec<Symmetric>,
 }
 
@@ -60,19 +60,19 @@ impl TransientBlock {
         &self.mesh
     }
 
-    /// The past for a step in s that starts from the state kept last.
+    /// The relaxation history for a step in s from the last kept state.
     pub fn history(&self, rule: FlowRule, time_step: f64) -> History {
         let branches = &self.rubber.branches;
         let steps: Vec<FlowStep> =
             branches.iter().map(|branch| rule.step(time_step, branch.relaxation_time)).collect();
-        let follows = steps.iter().map(|step| step.strain).collect();
+        let fractions = steps.iter().map(|step| step.strain).collect();
         let mut internal = Vec::with_capacity(self.internal.len());
         for (point, strain) in self.strains.iter().flatten().enumerate() {
             let first = point * branches.len();
             let old = &self.internal[first..first + branches.len()];
             internal.extend(steps.iter().zip(old).map(|(step, m_i)| step.history(m_i, strain)));
         }
-        History { steps, follows, internal }
+        History { steps, fractions, internal }
     }
 
     /// Internal forces and stiffness of all elements, row after row, at `displacements` in m of
@@ -108,16 +108,16 @@ impl TransientBlock {
             let first = (index * POINTS + point) * branches;
             let past = &history.internal[first..first + branches];
             let response =
-                Response::at(&self.rubber, part_of(point), &measure, past, &history.follows)
+                Response::at(&self.rubber, part_of(point), &measure, past, &history.fractions)
                     .ok_or(Inverted)?;
             sum.add(&f, gradients, element.weights[point], &response);
         }
         Ok(sum)
     }
 
-    /// Keeps the state at the end of a step and returns the energy in J/m that it turned into heat:
-    /// `-∂ψ/∂m_i : dm_i` by the trapezoidal rule over the change of `m_i`. The power at the ends of
-    /// steps far longer than a relaxation time would say nothing about what happens in between.
+    /// Keeps the state at the end of a step and returns the energy in J/m that it turned into heat: `-∂ψ/∂m_i : dm_i`
+    /// by the trapezoidal rule over the change of `m_i`. The power at the ends of a step far longer than a relaxation
+    /// time is not that in between.
     ///
     /// # Errors
     /// [`Inverted`]; the state kept before is then lost.
@@ -133,8 +133,8 @@ impl TransientBlock {
                 let old_strain = std::mem::replace(&mut self.strains[index][point], strain);
                 let first = (index * POINTS + point) * branches;
                 for (k, branch) in self.rubber.branches.iter().enumerate() {
-                    let (past, follows) = (&history.internal[first + k], history.follows[k]);
-                    let now = [0, 1, 2].map(|i| past[i] + follows * strain[i]);
+                    let (past, fraction) = (&history.internal[first + k], history.fractions[k]);
+                    let now = [0, 1, 2].map(|i| past[i] + fraction * strain[i]);
                     let before = std::mem::replace(&mut self.internal[first + k], now);
                     let old = self.driving_force(point, branch, &old_strain, &before);
                     let new = self.driving_force(point, branch, &strain, &now);
@@ -147,7 +147,7 @@ impl TransientBlock {
         Ok(heat)
     }
 
-    /// The part of the force on the flow of a branch that a point stands for.
+    /// The part of the force on the flow of a branch that a point integrates.
     fn driving_force(
         &self,
         point: usize,
@@ -187,17 +187,17 @@ impl TransientBlock {
     }
 
     /// Positions in an array over the nodes of the eight displacements of an element.
-    pub fn places(&self, index: usize) -> [usize; 8] {
+    pub fn dofs(&self, index: usize) -> [usize; 8] {
         let columns = self.mesh.columns;
         let (row, column) = (index / columns, index % columns);
         let right = (column + 1) % columns;
-        let mut places = [0; 8];
+        let mut dofs = [0; 8];
         for (node, at) in [column, right, column, right].into_iter().enumerate() {
             let first = 2 * ((row + node / 2) * columns + at);
-            places[2 * node] = first;
-            places[2 * node + 1] = first + 1;
+            dofs[2 * node] = first;
+            dofs[2 * node + 1] = first + 1;
         }
-        places
+        dofs
     }
 
     /// Deformation gradient from the displacements of the nodes, and the strain.
@@ -216,7 +216,7 @@ impl TransientBlock {
         }
         let strain = green_strain(&h);
         let f = [1.0 + h[0], h[1], h[2], 1.0 + h[3]];
-        // A line without area would already make the inverse strain infinite.
+        // For an element without area the inverse of the strain would be infinite.
         if dilatation(&strain) > -1.0 && f[0] * f[3] - f[1] * f[2] > 0.0 {
             let measure = self.rubber.rheology.measure(&strain).ok_or(Inverted)?;
             Ok((f, measure))
@@ -226,7 +226,7 @@ impl TransientBlock {
     }
 
     fn gather(&self, displacements: &[f64], index: usize) -> [f64; 8] {
-        self.places(index).map(|place| displacements[place])
+        self.dofs(index).map(|dof| displacements[dof])
     }
 }
 
@@ -259,7 +259,7 @@ impl Linearised {
     }
 }
 
-/// The part of stress and energy that a point stands for.
+/// The part of stress and energy that a point integrates.
 fn part_of(point: usize) -> Part {
     if point == CENTRE { Part::Volumetric } else { Part::Shear }
 }

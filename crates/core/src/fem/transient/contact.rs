@@ -10,7 +10,7 @@
 //! with the penalty ε and the multiplier λ of the augmented Lagrange method. The pressure between
 //! the nodes is `t = Σ_j N_j t_j`, and its force on the rubber is `t (-z', 1)` per reference
 //! length, which does exactly the work of the gaps. Pressures at the Gauss points instead would
-//! be twice as many as the nodes can answer, and would not converge with the multipliers.
+//! be twice as many as the displacements of the nodes, and would not converge with the multipliers.
 
 use crate::fem::mesh::Mesh;
 use crate::fem::profile::{Height, RigidProfile};
@@ -80,7 +80,7 @@ impl Contact {
             multipliers.values.iter().zip(&gaps).map(|(l, g)| l - penalty * g).collect();
         let mut active: Vec<bool> = trial.iter().map(|t| *t > 0.0).collect();
         if !active.contains(&true) {
-            // The block must stand on something while the iteration looks for its contact.
+            // At least one node carries the block while the iteration looks for its contact.
             let lowest = (0..n).max_by(|a, b| trial[*a].total_cmp(&trial[*b]));
             lowest.into_iter().for_each(|node| active[node] = true);
         }
@@ -129,7 +129,7 @@ impl Contact {
     }
 
     /// Positions in an array over the nodes of the entries of [`GapGradient`].
-    pub fn places(nodes: usize, node: usize) -> [usize; 6] {
+    pub fn dofs(nodes: usize, node: usize) -> [usize; 6] {
         let (before, after) = ((node + nodes - 1) % nodes, (node + 1) % nodes);
         [2 * before, 2 * before + 1, 2 * node, 2 * node + 1, 2 * after, 2 * after + 1]
     }
@@ -138,8 +138,8 @@ impl Contact {
     pub fn add_forces(&self, factor: f64, forces: &mut [f64]) {
         for (node, pressure) in self.pressures.iter().enumerate() {
             let gradient = self.gap_gradient(node);
-            for (place, by_place) in Self::places(self.nodes(), node).into_iter().zip(gradient) {
-                forces[place] += factor * pressure * by_place;
+            for (dof, by_dof) in Self::dofs(self.nodes(), node).into_iter().zip(gradient) {
+                forces[dof] += factor * pressure * by_dof;
             }
         }
     }

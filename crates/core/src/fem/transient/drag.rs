@@ -44,13 +44,13 @@ struct Course {
     counts: Counts,
     /// Motion of the lower edge over that of the upper one in the last step of the drag.
     following: f64,
-    /// Distance in m, in whole periods, that is left out of the displacements of the state. A drag
-    /// of many periods would drown the strains in the round-off of the displacements.
+    /// Distance in m, a multiple of the period, that is subtracted from the displacements of the state: after many
+    /// periods the strains would be lost in the round-off of the displacements.
     left_out: f64,
 }
 
 impl Course {
-    /// Goes back by the whole periods of a displacement; the profile is the same there.
+    /// Subtracts the largest multiple of the period from a displacement; the profile is the same there.
     fn leave_out_periods(&mut self, displacement: f64) {
         let period = self.block.mesh().period;
         let distance = (displacement / period).floor() * period;
@@ -111,7 +111,7 @@ impl TransientContact {
     ///
     /// # Errors
     /// [`TransientError::Rubber`], [`TransientError::OutOfRange`] and
-    /// [`TransientError::PeriodMismatch`].
+    /// [`TransientError::PeriodMismatch`]; [`TransientError::TooLarge`].
     pub fn new(
         rubber: &Rubber,
         rheology: Rheology,
@@ -136,7 +136,7 @@ impl TransientContact {
         let block = TransientBlock::new(mesh, finite_strain);
         let stepper = Stepper {
             profile,
-            tangent: Tangent::new(&block),
+            tangent: Tangent::new(&block)?,
             flow: options.flow,
             largest_violation: options.penetration_tolerance * range,
         };
@@ -202,7 +202,7 @@ impl TransientContact {
             if rest <= 1e-9 * phase.longest_step {
                 return Ok(());
             }
-            // Equal steps up to the end of the phase, rather than a sliver at last.
+            // Equal steps up to the end of the phase, without a tiny last one.
             let time_step = rest / (rest / limit - 1e-6).ceil().max(1.0);
             let before = course.counts.iterations.newton;
             match self.step(course, last.time + time_step, time_step, pressure) {

@@ -6,19 +6,19 @@ use crate::error_kind::{ErrorKind, HasKind};
 /// Why a time step has no solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StepFailure {
-    /// An element is turned inside out, or an internal tensor is not positive.
-    #[error("an element is turned inside out")]
+    /// An element is inverted, or an internal tensor is not positive.
+    #[error("an element is inverted")]
     Inverted,
     /// The tangent is singular.
     #[error("the tangent is singular")]
     Singular,
-    /// Newton did not end.
+    /// Newton did not converge.
     #[error("the equilibrium did not converge (residual {residual:.1e} of the load)")]
     EquilibriumNotConverged {
         /// Residual over the load.
         residual: f64,
     },
-    /// Uzawa did not end.
+    /// Uzawa did not converge.
     #[error("the contact pressures did not converge")]
     ContactNotConverged,
 }
@@ -26,7 +26,7 @@ pub enum StepFailure {
 /// Why there is no transient solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TransientError {
-    /// The rubber's numbers are no rubber for large strains.
+    /// The numbers of the rubber are out of range for large strains.
     #[error(transparent)]
     Rubber(#[from] crate::rubber::RubberError),
     /// A number outside its range.
@@ -49,6 +49,12 @@ pub enum TransientError {
         mesh: f64,
         /// Period of the profile in m.
         profile: f64,
+    },
+    /// The matrix of the mesh does not fit into memory or its indices.
+    #[error("no memory for a matrix of {unknowns} unknowns: use fewer columns")]
+    TooLarge {
+        /// Number of unknowns.
+        unknowns: usize,
     },
     /// Even the smallest time step found no solution.
     #[error(
@@ -78,7 +84,7 @@ impl HasKind for TransientError {
             Self::Rubber(_) | Self::OutOfRange { .. } | Self::PeriodMismatch { .. } => {
                 ErrorKind::Input
             }
-            Self::Stopped { .. } => ErrorKind::Failure,
+            Self::TooLarge { .. } | Self::Stopped { .. } => ErrorKind::Failure,
         }
     }
 }

@@ -22,7 +22,7 @@ pub enum FlowRule {
 pub struct FlowStep {
     old_internal: f64,
     old_strain: f64,
-    /// Weight of the new strain: the fraction by which the internal tensor follows at once.
+    /// Weight of the new strain: the fraction by which the internal tensor relaxes to it within the step.
     pub strain: f64,
 }
 

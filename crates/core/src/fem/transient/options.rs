@@ -46,22 +46,22 @@ impl Default for TransientOptions {
 }
 
 impl TransientOptions {
-    /// Checks that every number is in its range.
+    /// Checks that every number is in range.
     ///
     /// # Errors
     /// [`TransientError::OutOfRange`] for the first one that is not.
     pub fn validate(&self) -> Result<(), TransientError> {
-        positive("press_time in s", self.press_time.unwrap_or(1.0))?;
-        positive("penetration_tolerance", self.penetration_tolerance)?;
-        positive("penalty_factor", self.penalty_factor)?;
-        at_least_one("press_steps", self.press_steps)?;
-        at_least_one("averaged_periods", self.averaged_periods)?;
-        at_least_one("steps_per_period", self.steps_per_period.unwrap_or(1))?;
+        positive("the time of pressing in, in s,", self.press_time.unwrap_or(1.0))?;
+        positive("the tolerance of the penetration", self.penetration_tolerance)?;
+        positive("the factor of the penalty", self.penalty_factor)?;
+        at_least_one("the number of steps for pressing in", self.press_steps)?;
+        at_least_one("the number of averaged periods", self.averaged_periods)?;
+        at_least_one("the number of steps a period", self.steps_per_period.unwrap_or(1))?;
         if self.drag_periods < self.averaged_periods {
             return Err(TransientError::OutOfRange {
-                quantity: "drag_periods",
+                quantity: "the length of the drag in periods",
                 value: self.drag_periods as f64,
-                range: "at least averaged_periods",
+                range: "at least the number of averaged periods",
             });
         }
         Ok(())

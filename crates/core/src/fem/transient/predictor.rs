@@ -1,11 +1,11 @@
-//! The guess from which a step is iterated.
+//! The state from which a step is iterated.
 
 use super::step::State;
 use crate::fem::mesh::Mesh;
 
 /// The state carried along with the profile.
 ///
-/// In steady sliding the field stands still in the frame of the profile: after a distance d a
+/// In steady sliding the field is constant in the frame of the profile: after a distance d a
 /// rubber point has the displacement that the point a distance d ahead had before, plus d. The
 /// lower edge moves by `contact_distance`, the upper edge by `edge_distance`, both in m; between
 /// them the block shears.

@@ -1,4 +1,4 @@
-//! The block before it moves.
+//! The block at rest.
 
 use super::contact::{Contact, Multipliers};
 use super::error::TransientError;
@@ -25,7 +25,7 @@ pub fn height_range(profile: &RigidProfile, columns: usize) -> f64 {
     if most > least { most - least } else { profile.period() / columns as f64 }
 }
 
-/// Checks the mesh against itself and against the profile.
+/// Checks the mesh and that its period is that of the profile.
 ///
 /// # Errors
 /// [`TransientError::OutOfRange`] and [`TransientError::PeriodMismatch`].

@@ -1,4 +1,4 @@
-//! The time series of a drag and what is read from it.
+//! The time series of a drag and the averages over it.
 
 use super::step::Iterations;
 

@@ -20,13 +20,13 @@ const MAX_UZAWA: usize = 30;
 /// Largest change of a displacement in an iteration, over the period.
 const LARGEST_CHANGE: f64 = 0.1;
 
-/// Halvings of a change that turns an element inside out or overshoots.
+/// Halvings of a change that inverts an element or overshoots.
 const MAX_HALVINGS: usize = 6;
 
 /// Fraction to which the forces along a change must shrink.
 const LINE_SEARCH: f64 = 0.8;
 
-/// What loads the block at the end of a step.
+/// Load on the block at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Load {
     /// Nominal pressure in Pa on the upper edge.
@@ -118,7 +118,7 @@ impl Stepper {
         Err(StepFailure::EquilibriumNotConverged { residual: trial.norm })
     }
 
-    /// Goes along `-change` as far as no element is turned inside out and the forces along it
+    /// Goes along `-change` as far as no element is inverted and the forces along it
     /// shrink: where the contact changes, the full change overshoots and the iteration would
     /// cycle between two sets of contact nodes.
     fn change(
@@ -162,8 +162,8 @@ impl Stepper {
         let elements = block.linearise(history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
         let mut residual = vec![0.0; state.nodes.len()];
         for (index, element) in elements.iter().enumerate() {
-            for (place, force) in block.places(index).into_iter().zip(element.forces) {
-                residual[place] += force;
+            for (dof, force) in block.dofs(index).into_iter().zip(element.forces) {
+                residual[dof] += force;
             }
         }
         let nodal_load = load.pressure * mesh.spacing();
@@ -172,7 +172,7 @@ impl Stepper {
         let edge = &state.nodes[..2 * mesh.columns];
         let contact = Contact::at(mesh, &self.profile, edge, &state.multipliers);
         contact.add_forces(-1.0, &mut residual);
-        let norm = euclidean_norm(&self.tangent.own(&residual))
+        let norm = euclidean_norm(&self.tangent.free(&residual))
             / (nodal_load * (mesh.columns as f64).sqrt());
         if norm.is_finite() {
             Ok(Trial { elements, contact, residual, norm })

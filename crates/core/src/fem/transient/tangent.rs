@@ -2,6 +2,7 @@
 
 use super::block::{Linearised, TransientBlock};
 use super::contact::Contact;
+use super::error::TransientError;
 use crate::fem::unknowns::Unknowns;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
@@ -20,28 +21,32 @@ pub struct Tangent {
 
 impl Tangent {
     /// The pattern of a block in contact.
-    pub fn new(block: &TransientBlock) -> Self {
+    ///
+    /// # Errors
+    /// [`TransientError::TooLarge`].
+    pub fn new(block: &TransientBlock) -> Result<Self, TransientError> {
         let mesh = block.mesh();
         let unknowns = Unknowns { columns: mesh.columns, rows: mesh.rows() };
         let mut pairs = Vec::new();
         for index in 0..mesh.columns * mesh.rows() {
-            let places = block.places(index).map(|place| unknowns.of(place));
-            pairs.extend(entries(&places).map(|(row, col, _, _)| Pair { row, col }));
+            let dofs = block.dofs(index).map(|dof| unknowns.index_of(dof));
+            pairs.extend(entries(&dofs).map(|(row, col, _, _)| Pair { row, col }));
         }
         for node in 0..mesh.columns {
-            let places = Contact::places(mesh.columns, node);
-            pairs.extend(entries(&places.map(Some)).map(|(row, col, _, _)| Pair { row, col }));
-            let places = edge_places(&places);
-            pairs.extend(entries(&places).map(|(row, col, _, _)| Pair { row, col }));
+            let dofs = Contact::dofs(mesh.columns, node);
+            pairs.extend(entries(&dofs.map(Some)).map(|(row, col, _, _)| Pair { row, col }));
+            let dofs = edge_dofs(&dofs);
+            pairs.extend(entries(&dofs).map(|(row, col, _, _)| Pair { row, col }));
         }
-        let size = unknowns.own();
+        let size = unknowns.free();
+        let too_large = TransientError::TooLarge { unknowns: size };
         let (symbolic, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
-            .expect("indices lie in the matrix");
-        let symbolic_lu = SymbolicLu::try_new(symbolic.as_ref()).expect("memory for the pattern");
-        Self { unknowns, symbolic, argsort, symbolic_lu }
+            .map_err(|_| too_large.clone())?;
+        let symbolic_lu = SymbolicLu::try_new(symbolic.as_ref()).map_err(|_| too_large)?;
+        Ok(Self { unknowns, symbolic, argsort, symbolic_lu })
     }
 
-    /// Solves for the change of all displacements; none for a singular matrix.
+    /// Solves for the change of all displacements; `None` for a singular matrix.
     pub fn solve(
         &self,
         block: &TransientBlock,
@@ -53,19 +58,19 @@ impl Tangent {
         let matrix =
             SparseColMat::new_from_argsort(self.symbolic.clone(), &self.argsort, &values).ok()?;
         let lu = Lu::try_new_with_symbolic(self.symbolic_lu.clone(), matrix.as_ref()).ok()?;
-        let mut own = self.own(residual);
-        let size = own.len();
-        lu.solve_in_place(faer::MatMut::from_column_major_slice_mut(&mut own, size, 1));
+        let mut free = self.free(residual);
+        let size = free.len();
+        lu.solve_in_place(faer::MatMut::from_column_major_slice_mut(&mut free, size, 1));
         // The upper edge keeps its prescribed x displacement.
-        own.push(0.0);
-        own.iter().all(|change| change.is_finite()).then(|| self.unknowns.expand(&own))
+        free.push(0.0);
+        free.iter().all(|change| change.is_finite()).then(|| self.unknowns.expand(&free))
     }
 
     /// The entries of an array over the nodes that belong to unknowns.
-    pub fn own(&self, nodes: &[f64]) -> Vec<f64> {
-        let mut own = self.unknowns.reduce(nodes, 0.0);
-        own.pop();
-        own
+    pub fn free(&self, nodes: &[f64]) -> Vec<f64> {
+        let mut free = self.unknowns.reduce(nodes, 0.0);
+        free.pop();
+        free
     }
 
     /// Values in the order of the pattern.
@@ -77,33 +82,32 @@ impl Tangent {
     ) -> Vec<f64> {
         let mut values = Vec::with_capacity(64 * elements.len() + 40 * contact.nodes());
         for (index, element) in elements.iter().enumerate() {
-            let places = block.places(index).map(|place| self.unknowns.of(place));
-            values.extend(entries(&places).map(|(_, _, i, j)| element.stiffness[i][j]));
+            let dofs = block.dofs(index).map(|dof| self.unknowns.index_of(dof));
+            values.extend(entries(&dofs).map(|(_, _, i, j)| element.stiffness[i][j]));
         }
         for node in 0..contact.nodes() {
-            let places = Contact::places(contact.nodes(), node);
+            let dofs = Contact::dofs(contact.nodes(), node);
             let stiffness = contact.penalty_stiffness(node);
-            values.extend(entries(&places.map(Some)).map(|(_, _, i, j)| stiffness[i][j]));
+            values.extend(entries(&dofs.map(Some)).map(|(_, _, i, j)| stiffness[i][j]));
             let stiffness = contact.curvature_stiffness(node);
-            values.extend(entries(&edge_places(&places)).map(|(_, _, i, j)| stiffness[i][j]));
+            values.extend(entries(&edge_dofs(&dofs)).map(|(_, _, i, j)| stiffness[i][j]));
         }
         values
     }
 }
 
 /// The x displacements of a node and the one after it.
-fn edge_places(places: &[usize; 6]) -> [Option<usize>; 2] {
-    [Some(places[2]), Some(places[4])]
+fn edge_dofs(dofs: &[usize; 6]) -> [Option<usize>; 2] {
+    [Some(dofs[2]), Some(dofs[4])]
 }
 
 /// Row, column and their positions in a local matrix, for all of its entries that belong to
 /// unknowns.
 fn entries<const N: usize>(
-    places: &[Option<usize>; N],
+    dofs: &[Option<usize>; N],
 ) -> impl Iterator<Item = (usize, usize, usize, usize)> {
-    places.iter().enumerate().flat_map(move |(j, col)| {
-        places
-            .iter()
+    dofs.iter().enumerate().flat_map(move |(j, col)| {
+        dofs.iter()
             .enumerate()
             .filter_map(move |(i, row)| row.zip(*col).map(|(row, col)| (row, col, i, j)))
     })

@@ -84,8 +84,8 @@ fn a_homogeneous_deformation_needs_only_edge_forces() {
         let elements = block.linearise(&history, &nodes).unwrap();
         let mut forces = vec![0.0; nodes.len()];
         for (index, element) in elements.iter().enumerate() {
-            for (place, force) in block.places(index).into_iter().zip(element.forces) {
-                forces[place] += force;
+            for (dof, force) in block.dofs(index).into_iter().zip(element.forces) {
+                forces[dof] += force;
             }
         }
         let row = 2 * columns;
@@ -105,10 +105,10 @@ fn stiffness_is_the_derivative_of_the_forces() {
             let elements = block.linearise(&history, &nodes).unwrap();
             let step = 1e-6 * block.mesh().spacing();
             for (index, element) in elements.iter().enumerate() {
-                for (j, place) in block.places(index).into_iter().enumerate() {
+                for (j, dof) in block.dofs(index).into_iter().enumerate() {
                     let forces = |change: f64| {
                         let mut nodes = nodes.clone();
-                        nodes[place] += change;
+                        nodes[dof] += change;
                         block.linearise(&history, &nodes).unwrap()[index].forces
                     };
                     let (after, before) = (forces(step), forces(-step));
@@ -143,12 +143,12 @@ fn contact_stiffness_is_the_derivative_of_the_forces() {
     assert!(contact.active.contains(&true) && contact.active.contains(&false));
     let mut stiffness = vec![vec![0.0; 2 * n]; 2 * n];
     for node in 0..n {
-        let places = Contact::places(n, node);
+        let dofs = Contact::dofs(n, node);
         let penalty = contact.penalty_stiffness(node);
-        for (row, i) in penalty.iter().zip(places) {
-            row.iter().zip(places).for_each(|(k, j)| stiffness[i][j] += k);
+        for (row, i) in penalty.iter().zip(dofs) {
+            row.iter().zip(dofs).for_each(|(k, j)| stiffness[i][j] += k);
         }
-        let ends = [places[2], places[4]];
+        let ends = [dofs[2], dofs[4]];
         for (row, i) in contact.curvature_stiffness(node).iter().zip(ends) {
             row.iter().zip(ends).for_each(|(k, j)| stiffness[i][j] += k);
         }
@@ -178,7 +178,7 @@ fn a_flat_profile_presses_uniformly() {
     let block = TransientBlock::new(mesh.clone(), rubber);
     let stepper = Stepper {
         profile: flat,
-        tangent: Tangent::new(&block),
+        tangent: Tangent::new(&block).unwrap(),
         flow: FlowRule::Trapezoidal,
         // Small against what a pressure of 1e-12 of the load moves through the penalty.
         largest_violation: 1e-19,
@@ -325,9 +325,9 @@ fn bad_numbers_are_named() {
     long.period *= 2.0;
     assert!(new(0.01, long, short()).contains("period"));
     let options = TransientOptions { drag_periods: 1, averaged_periods: 2, ..short() };
-    assert!(new(0.01, mesh(8), options).contains("drag_periods"));
+    assert!(new(0.01, mesh(8), options).contains("the length of the drag"));
     let options = TransientOptions { penetration_tolerance: 0.0, ..short() };
-    assert!(new(0.01, mesh(8), options).contains("penetration_tolerance"));
+    assert!(new(0.01, mesh(8), options).contains("the tolerance of the penetration"));
     let contact = contact(&rubber(), profile(1e-6), mesh(8), short());
     assert!(contact.run(-1.0, |_| ()).unwrap_err().to_string().contains("pressure"));
 }

@@ -14,7 +14,7 @@ pub(super) struct Part {
 /// A set of at most this many nodes is not cut further: its front is dense and small enough.
 const LEAF: usize = 16;
 
-/// Cuts the nodes in halves again and again (George 1973, doi:10.1137/0710032) and returns
+/// Halves the set of nodes recursively (George 1973, doi:10.1137/0710032) and returns
 /// separators and leaves in postorder: children come before their parent, the root is last.
 ///
 /// A cut is a line across one of the two axes; the nodes of one side that have a neighbour on the
@@ -88,7 +88,7 @@ impl Dissection<'_> {
         let first = sorted.partition_point(|&node| at(node)[axis] < here);
         let last = sorted.partition_point(|&node| at(node)[axis] <= here);
         let nearest = if middle - first <= last - middle { first } else { last };
-        // With one coordinate for all there is no line between: cut by the other and the number.
+        // All have the same coordinate: order them by the other one and their number.
         let cut = if nearest == 0 || nearest == sorted.len() { middle } else { nearest };
         let (low, high) = sorted.split_at(cut);
         self.separate(low, high)

@@ -4,7 +4,7 @@
 //!
 //! Nodes are ordered by nested dissection of their coordinates. Each separator, and each leaf
 //! between separators, is eliminated in a dense matrix, its front, with row exchanges among the
-//! rows of the front. Subtrees that are independent run beside each other on the threads of rayon.
+//! rows of the front. Independent subtrees run in parallel on the threads of rayon.
 //!
 //! Why not the sparse LU of faer 0.24: it exchanges any rows, so it has to provide for the fill of
 //! `A^T A`. Measured on periodic grids of nearly incompressible Q4 elements that couple to their upstream
@@ -46,7 +46,7 @@ type Real = f32;
 /// eliminated, is round-off.
 const TINY: Real = Real::EPSILON;
 
-/// With a relative pivot below this it takes a trial on a vector to tell whether the factors are an inverse. The smallest
+/// With a relative pivot below this the factors are tested on a vector. The smallest
 /// pivot alone does not tell singular matrices (2e-6 to 4e-6 measured on 256 nodes) from merely large
 /// grids of nearly incompressible elements (5e-6 on 2048 x 60 nodes, where refinement still gains
 /// 1.5 digits a step).
@@ -66,7 +66,7 @@ pub enum FactorError {
         /// That pivot relative to the largest entry of its column before elimination in its front.
         relative: f64,
     },
-    /// The user wished to stop.
+    /// The user stopped it.
     #[error("interrupted")]
     Interrupted,
 }
@@ -85,11 +85,11 @@ pub struct SparseLu {
 }
 
 impl SparseLu {
-    /// Finds the order of elimination and the places of the factors: once for a pattern.
+    /// Finds the order of elimination and the positions of the factors: once for a pattern.
     ///
-    /// The coordinates of the nodes are used for the order alone, so any lengths will do in which
-    /// neighbours are near each other; those of a periodic grid need no image across the wrap.
-    /// Nodes without distinct coordinates are solved all the same, with more fill.
+    /// The coordinates of the nodes are used for the order alone, so any lengths serve in which neighbours are near
+    /// each other; those of a periodic grid need no image across the wrap. Nodes without distinct coordinates are
+    /// solved all the same, with more fill.
     ///
     /// # Panics
     /// If the nodes of the pattern and the coordinates differ in number.
@@ -120,9 +120,9 @@ impl SparseLu {
     /// Factors the matrix with these blocks, in the order of the pattern.
     ///
     /// # Errors
-    /// [`FactorError::Singular`] if a pivot is zero, round-off or not a number, and
-    /// [`FactorError::Interrupted`]. There are no factors then. Small pivots alone are no error: such
-    /// factors may be worthless as an inverse ([`Self::reproduces`] tells) and still lead an iteration.
+    /// [`FactorError::Singular`] if a pivot is zero, round-off or not a number, and [`FactorError::Interrupted`]. The
+    /// factors are then invalid. Small pivots alone are not an error: such factors may be a poor inverse (see
+    /// [`Self::reproduces`]) and still precondition an iteration.
     ///
     /// # Panics
     /// If there are not as many blocks as in the pattern.
@@ -147,9 +147,8 @@ impl SparseLu {
     /// Whether the factors serve as an inverse of the matrix with these blocks: no pivot is small, or
     /// `|x - (LU)^-1 A x| < |x| / 2` for the vector `x = (LU)^-1 b`, `b` of random signs.
     ///
-    /// In such an `x` the direction prevails that the factors shrink most. If `A` is singular this
-    /// is what `A` takes to zero, and the error is `x` itself; whereas with `(LU)^-1 A` near the
-    /// identity it is small.
+    /// Such an `x` is dominated by the direction that the factors shrink most. If `A` is singular, `A` takes this
+    /// direction to zero, and the error is `x` itself; if `(LU)^-1 A` is near the identity, it is small.
     pub fn reproduces(&self, values: &[Block]) -> bool {
         if self.smallest >= DOUBTFUL {
             return true;
@@ -176,7 +175,7 @@ impl SparseLu {
         error < 0.25 * size
     }
 
-    /// Puts `(LU)^-1 rhs` in place of `rhs`: `A^-1 rhs` to single precision, times the condition of `A`.
+    /// Replaces `rhs` by `(LU)^-1 rhs`: `A^-1 rhs` to single precision, times the condition of `A`.
     ///
     /// # Panics
     /// If there are no factors, or `rhs` has not 2 entries a node.

@@ -1,4 +1,4 @@
-//! The factors: dense elimination in each front, subtree beside subtree.
+//! The factors: dense elimination in each front, subtrees in parallel.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
@@ -15,7 +15,7 @@ use super::symbolic::{Front, Symbolic};
 use super::{FactorError, Real, TINY};
 use crate::numerics::Interrupt;
 
-/// Subtrees with fewer multiplications than this are not worth a task of their own.
+/// Subtrees with fewer multiplications than this are not worth a separate task.
 const SERIAL_WORK: f64 = 1e6;
 
 /// What all fronts read.
@@ -26,9 +26,9 @@ pub(super) struct Elimination<'a> {
     pub interrupt: &'a Interrupt,
 }
 
-/// What a subtree leaves to its parent.
+/// Contribution of a subtree to its parent.
 pub(super) struct Remainder {
-    /// What is to be added to the matrix of the border, column by column.
+    /// Matrix to be added to that of the border, column by column.
     schur: Vec<Real>,
     pub smallest: Pivot,
 }
@@ -37,7 +37,7 @@ pub(super) struct Remainder {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pivot {
     pub relative: Real,
-    /// Place of its column in the order of elimination.
+    /// Position of its column in the order of elimination.
     pub place: usize,
 }
 
@@ -101,7 +101,7 @@ impl Elimination<'_> {
         Ok(vec![a?, b?])
     }
 
-    /// Puts the scaled blocks of the matrix in their places.
+    /// Writes the scaled blocks of the matrix to their positions.
     fn insert_blocks(&self, front: &Front, own: &mut [Real]) {
         let (p, height) = (front.pivots(), front.pivots() + front.remaining());
         let panel = front.panel();
@@ -183,7 +183,7 @@ fn exchange_rows(columns: &mut [Real], exchanges: &[u32]) {
     }
 }
 
-/// Adds what a child leaves to the parent's front.
+/// Adds the contribution of a child to the front of its parent.
 fn add_contribution(
     child: &Front,
     contribution: &[Real],

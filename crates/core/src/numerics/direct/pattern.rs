@@ -63,12 +63,12 @@ impl BlockPattern {
         &self.columns[self.starts[node]..self.starts[node + 1]]
     }
 
-    /// Where the first block of this row of blocks stands in the values.
+    /// Position of the first block of this row of blocks in the values.
     pub fn start(&self, node: usize) -> usize {
         self.starts[node]
     }
 
-    /// Where the block of a pair of nodes stands in the values; `None` where it is zero.
+    /// Position of the block of a pair of nodes in the values; `None` if it is zero.
     pub fn position(&self, row: usize, column: usize) -> Option<usize> {
         let column = u32::try_from(column).ok()?;
         let within = self.row(row).binary_search(&column).ok()?;

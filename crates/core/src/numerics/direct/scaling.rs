@@ -1,4 +1,4 @@
-//! Equilibration, so that single precision holds the entries and a small pivot means something.
+//! Equilibration, so that the entries fit single precision and small pivots can be compared.
 
 use super::pattern::{Block, BlockPattern};
 
@@ -11,7 +11,7 @@ pub(super) struct Scaling {
 
 impl Scaling {
     /// Divides rows, then columns, by their largest entries. A row or column of zeros keeps 1:
-    /// its pivot will be found to be zero.
+    /// its pivot is zero.
     pub fn update(&mut self, pattern: &BlockPattern, values: &[Block]) {
         let unknowns = 2 * pattern.nodes();
         for largest in [&mut self.rows, &mut self.columns] {

@@ -1,12 +1,12 @@
-//! Forward and backward substitution, subtree beside subtree.
+//! Forward and backward substitution, subtrees in parallel.
 
 use super::Real;
 use super::symbolic::{Front, Symbolic};
 
-/// Subtrees with fewer factors than this are not worth a task of their own.
+/// Subtrees with fewer factors than this are not worth a separate task.
 const SERIAL_FACTORS: usize = 200_000;
 
-/// The factors and row exchanges of a subtree, which belong to `x` of its own unknowns.
+/// The factors and row exchanges of a subtree, which belong to the `x` of its unknowns.
 #[derive(Clone, Copy)]
 pub(super) struct Factors<'a> {
     pub symbolic: &'a Symbolic,
@@ -67,7 +67,7 @@ impl<'a> Factors<'a> {
         });
     }
 
-    /// Does the same in both children, at once if they are large.
+    /// Does the same in both children, in parallel if they are large.
     fn beside<R: Send>(
         &self,
         front: &Front,

@@ -1,4 +1,4 @@
-//! What the pattern alone decides: fronts, their borders and where each block goes.
+//! The symbolic factorisation: fronts, their borders and the position of each block.
 
 use std::ops::Range;
 
@@ -7,8 +7,7 @@ use super::dissection::{Part, dissect};
 use super::numeric::Pivot;
 use super::pattern::BlockPattern;
 
-/// A dense matrix in which some nodes are eliminated, with the nodes that these are coupled to by
-/// then.
+/// A dense matrix in which some nodes are eliminated, with the nodes that these are then coupled to.
 ///
 /// Its factors are stored column by column: first the panel, columns of the own unknowns over all
 /// rows (own, then border), then the columns of the border over the own rows.
@@ -16,9 +15,9 @@ use super::pattern::BlockPattern;
 pub(super) struct Front {
     /// Own nodes, in the order of elimination.
     pub own: Range<usize>,
-    /// The nodes that remain, by their place in the order of elimination, ascending.
+    /// The nodes that remain, by their position in the order of elimination, ascending.
     pub border: Vec<u32>,
-    /// Of each border node, its place among own and border nodes of the parent, ascending.
+    /// Position of each border node among own and border nodes of the parent, ascending.
     pub in_parent: Vec<u32>,
     pub children: Vec<usize>,
     /// First front of this one's subtree (fronts are in postorder).
@@ -39,7 +38,7 @@ pub(super) struct Entry {
     pub column: u32,
     /// Index in the values.
     pub value: u32,
-    /// Place of its first entry in the factors of the front.
+    /// Position of its first entry in the factors of the front.
     pub to: u32,
 }
 
@@ -70,7 +69,7 @@ impl Front {
 pub(super) struct Symbolic {
     /// Fronts in postorder.
     pub fronts: Vec<Front>,
-    /// The node at each place in the order of elimination.
+    /// The node at each position in the order of elimination.
     pub order: Vec<u32>,
 }
 
@@ -88,7 +87,7 @@ impl Symbolic {
         Self { fronts, order }
     }
 
-    /// Index of the unknown at each place in the order of elimination.
+    /// Index of the unknown at each position in the order of elimination.
     pub fn unknowns(&self) -> impl Iterator<Item = usize> {
         self.order.iter().flat_map(|&node| [2 * node as usize, 2 * node as usize + 1])
     }
@@ -100,7 +99,7 @@ impl Symbolic {
     }
 }
 
-/// Finds the borders: what own nodes are coupled to, and what the children leave.
+/// Finds the borders: nodes coupled to the eliminated ones, and the borders of the children.
 fn eliminate(graph: &BlockPattern, parts: &[Part], order: &[u32], place: &[u32]) -> Vec<Front> {
     let mut fronts: Vec<Front> = Vec::with_capacity(parts.len());
     let (mut begin, mut offset) = (0, 0);
@@ -138,7 +137,7 @@ fn eliminate(graph: &BlockPattern, parts: &[Part], order: &[u32], place: &[u32])
     fronts
 }
 
-/// Places of the nodes of a child's border among own and border nodes of the parent.
+/// Positions of the border nodes of a child among the own and border nodes of the parent.
 fn places(border: &[u32], own: &Range<usize>, parents: &[u32]) -> Vec<u32> {
     border.iter().map(|&at| within(at as usize, own, parents) as u32).collect()
 }

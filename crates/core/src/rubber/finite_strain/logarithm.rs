@@ -38,9 +38,8 @@ type Deviator = [f64; 2];
 const NEARLY_EQUAL: f64 = 0.04;
 
 impl Logarithm {
-    /// The logarithm of `1 + strain`, accurate for a small strain; none where the tensor is not
-    /// positive definite.
-    pub fn of(strain: &Symmetric) -> Option<Self> {
+    /// The logarithm of `1 + strain`, accurate for a small strain; `None` if the tensor is not positive definite.
+    pub fn new(strain: &Symmetric) -> Option<Self> {
         let mean = 1.0 + 0.5 * (strain[0] + strain[1]);
         let dilatation = dilatation(strain);
         let determinant = 1.0 + dilatation;
@@ -202,7 +201,7 @@ mod tests {
     fn value_and_derivatives_are_those_of_the_eigenvectors() {
         let (h, k) = ([0.7, -0.4, 0.9], [-0.2, 1.3, 0.5]);
         for strain in strains() {
-            let logarithm = Logarithm::of(&strain).unwrap();
+            let logarithm = Logarithm::new(&strain).unwrap();
             let ours =
                 [logarithm.value(), logarithm.derivative(&h), logarithm.second_derivative(&h, &k)];
             let theirs = oracle(&matrix(&one_plus(&strain)), &matrix(&h), &matrix(&k));
@@ -218,7 +217,7 @@ mod tests {
     #[test]
     fn a_tensor_that_is_not_positive_has_none() {
         for strain in [[-1.0, 0.0, 0.0], [-3.0, -3.0, 0.0], [0.0, 0.0, 1.1], [f64::NAN; 3]] {
-            assert_eq!(Logarithm::of(&strain), None, "{strain:?}");
+            assert_eq!(Logarithm::new(&strain), None, "{strain:?}");
         }
     }
 }

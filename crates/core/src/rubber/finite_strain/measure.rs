@@ -1,6 +1,5 @@
 //! The strain measure that a law is written in.
 
-use super::Rheology;
 use super::logarithm::Logarithm;
 use super::symmetric::Symmetric;
 
@@ -13,17 +12,6 @@ pub enum Measure {
     Logarithmic(Logarithm),
 }
 
-impl Rheology {
-    /// The measure of this law at the strain `C - 1`; none where the law has none, since `C` is not
-    /// positive definite.
-    pub fn measure(self, strain: &Symmetric) -> Option<Measure> {
-        match self {
-            Self::NeoHookean => Some(Measure::Green(*strain)),
-            Self::Linear => Logarithm::of(strain).map(Measure::Logarithmic),
-        }
-    }
-}
-
 impl Measure {
     /// `m`.
     #[inline]
@@ -34,8 +22,8 @@ impl Measure {
         }
     }
 
-    /// The change `dm/dC : δC` of the measure. The derivative is symmetric, so the same turns the
-    /// conjugate stress `T` into the second Piola-Kirchhoff stress `S = T : dm/dC`.
+    /// The change `dm/dC : δC` of the measure. The derivative is symmetric, so the same takes the
+    /// conjugate stress `T` to the second Piola-Kirchhoff stress `S = T : dm/dC`.
     #[inline]
     pub fn derivative(&self, x: &Symmetric) -> Symmetric {
         match self {
@@ -57,8 +45,8 @@ impl Measure {
             Self::Green(_) => *conjugate_change,
             Self::Logarithmic(logarithm) => {
                 let elastic = logarithm.derivative(conjugate_change);
-                let turned = logarithm.second_derivative(conjugate, strain_change);
-                [0, 1, 2].map(|i| elastic[i] + turned[i])
+                let geometric = logarithm.second_derivative(conjugate, strain_change);
+                [0, 1, 2].map(|i| elastic[i] + geometric[i])
             }
         }
     }

@@ -7,7 +7,7 @@
 //! μ = E / (2 (1 + ν)),    Λ = E ν / ((1 + ν) (1 - 2 ν))
 //! ```
 //!
-//! and one of two laws. Each is written in a measure `m` of strain, a function of the right
+//! and one of the laws of [`Rheology`]. Each is written in a measure `m` of strain, a function of the right
 //! Cauchy-Green tensor `C = Fᵀ F`; the internal tensor `m_i` of a branch (zero for the equilibrium
 //! spring) follows it by a linear flow rule, `dm_i/dt = (m - m_i) / τ`; and the stress `T = 2 ∂ψ/∂m`
 //! conjugate to it gives the second Piola-Kirchhoff stress `S = T : dm/dC`.
@@ -18,16 +18,26 @@
 //! ```
 //!
 //! The first is that of the thesis (2.2.15, 2.2.24, 2.2.28). The second is linear viscoelasticity
-//! in the logarithmic strain `E = ½ ln C` of Hencky, `T = 2 μ e + Λ tr(e) 1` with `e = E - E_i`
-//! (Miehe, Apel, Lambrecht 2002, doi:10.1016/S0045-7825(02)00438-3): Kirchhoff stress linear in
-//! the true strain. Both consist of a shear part (factor μ) and a volumetric part (factor Λ), so
-//! that elements can integrate them at different points.
+//! in the logarithmic strain `E = ½ ln C` of Hencky. Both consist of a shear part (factor μ) and a volumetric
+//! part (factor Λ), so that elements can integrate them at different points.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `law` | what a law states: energy, stress, tangent, driving force |
+//! | `neo_hookean`, `hencky` | the laws, one a file |
+//! | `checks` | the tests that every law passes |
+//! | `measure` | the strain measure of a law and its derivatives by `C` |
+//! | `logarithm` | `ln C` in closed form |
+//! | `symmetric` | symmetric tensors in the plane |
 
+#[cfg(test)]
+mod checks;
+mod hencky;
+mod law;
 mod logarithm;
 mod measure;
+mod neo_hookean;
 mod symmetric;
-#[cfg(test)]
-mod tests;
 
 pub use logarithm::Logarithm;
 pub use measure::Measure;
@@ -37,6 +47,16 @@ pub use symmetric::{
 };
 
 use super::{Rubber, RubberError};
+use hencky::Hencky;
+use law::Law;
+use neo_hookean::NeoHookean;
+
+/// Derivative of a conjugate stress by its strain, `dT_i / dm_j` in Pa; the component xz of the strain stands for xz and
+/// zx together.
+pub type Tangent = [[f64; 3]; 3];
+
+/// Unit changes of the three components of a strain.
+pub(crate) const UNITS: [Symmetric; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// The law of a spring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,6 +66,45 @@ pub enum Rheology {
     NeoHookean,
     /// Linear viscoelastic Kirchhoff stress in the logarithmic strain.
     Linear,
+}
+
+/// Calls a function of the law that a rheology names.
+macro_rules! of_law {
+    ($rheology:expr, $function:ident($($argument:expr),*)) => {
+        match $rheology {
+            Rheology::NeoHookean => NeoHookean::$function($($argument),*),
+            Rheology::Linear => Hencky::$function($($argument),*),
+        }
+    };
+}
+
+impl Rheology {
+    /// Whether the measure of this law is the strain `C - 1` itself.
+    pub(crate) fn is_in_green_strain(self) -> bool {
+        match self {
+            Self::NeoHookean => NeoHookean::IN_GREEN_STRAIN,
+            Self::Linear => Hencky::IN_GREEN_STRAIN,
+        }
+    }
+
+    /// The measure of this law at the strain `C - 1`; none where the law has none, since `C` is not
+    /// positive definite.
+    #[inline]
+    pub fn measure(self, strain: &Symmetric) -> Option<Measure> {
+        of_law!(self, measure(strain))
+    }
+
+    /// `G(m)` and `V(m)` of the tangent, see [`Law::metric`].
+    #[inline]
+    pub(crate) fn metric(self, measure: &Symmetric) -> Option<(Symmetric, f64)> {
+        of_law!(self, metric(measure))
+    }
+
+    /// `V(m)` of the tangent, see [`Law::metric`].
+    #[inline]
+    pub(crate) fn volume(self, measure: &Symmetric) -> f64 {
+        of_law!(self, volume(measure))
+    }
 }
 
 /// A spring with its relaxation time.
@@ -126,60 +185,43 @@ impl FiniteStrainRubber {
     /// Energy in Pa of one spring at the strain `m` with the internal tensor `m_i`, both in the
     /// measure of the law; the conjugate stress is `T = 2 ∂ψ/∂m`.
     pub fn energy(&self, spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
-        match self.rheology {
-            Rheology::NeoHookean => {
-                let (c, past) = (one_plus(strain), one_plus(internal));
-                let stretch = contract(&inverse(&past), &c);
-                let volume = determinant(&c) / determinant(&past);
-                0.5 * spring.shear * (stretch - 2.0 - volume.ln())
-                    + 0.25 * spring.volumetric * (volume - 1.0 - volume.ln())
-            }
-            Rheology::Linear => {
-                let e = [0, 1, 2].map(|i| 0.5 * (strain[i] - internal[i]));
-                spring.shear * contract(&e, &e)
-                    + 0.5 * spring.volumetric * contract(&IDENTITY, &e).powi(2)
-            }
-        }
+        of_law!(self.rheology, energy(spring, strain, internal))
     }
 
     /// Shear part of the conjugate stress in Pa of one spring at the strain `m` with the internal tensor `m_i`; as accurate
     /// as their difference `lag = m - m_i`, which may be known better than by subtraction.
-    pub fn shear_stress(
-        &self,
-        spring: &Spring,
-        [strain, internal, lag]: [&Symmetric; 3],
-    ) -> Symmetric {
-        match self.rheology {
-            Rheology::NeoHookean => {
-                // C_i⁻¹ - C⁻¹ = adj C_i (det C - det C_i) / (det C det C_i)
-                //               + (adj C_i - adj C) / det C
-                let (volume, past) = (1.0 + dilatation(strain), 1.0 + dilatation(internal));
-                let change = dilatation_difference(strain, internal, lag) / (volume * past);
-                let adjugate = [1.0 + internal[1], 1.0 + internal[0], -internal[2]];
-                let less = [-lag[1], -lag[0], lag[2]];
-                [0, 1, 2].map(|i| spring.shear * (adjugate[i] * change + less[i] / volume))
-            }
-            Rheology::Linear => lag.map(|lag| spring.shear * lag),
-        }
+    #[inline]
+    pub fn shear_stress(&self, spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric {
+        of_law!(self.rheology, shear_stress(spring, tensors))
     }
 
     /// Volumetric part of the conjugate stress of one spring in Pa, as accurate.
-    pub fn volumetric_stress(
+    #[inline]
+    pub fn volumetric_stress(&self, spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric {
+        of_law!(self.rheology, volumetric_stress(spring, tensors))
+    }
+
+    /// Derivative of [`Self::shear_stress`] by the strain `m` if the internal tensor changes by a `fraction` of its change;
+    /// none where the law takes the inverse of an internal tensor that is not positive.
+    pub fn shear_tangent(
         &self,
         spring: &Spring,
-        [strain, internal, lag]: [&Symmetric; 3],
-    ) -> Symmetric {
-        let half = 0.5 * spring.volumetric;
-        match self.rheology {
-            Rheology::NeoHookean => {
-                let past = 1.0 + dilatation(internal);
-                let pressure = half * dilatation_difference(strain, internal, lag) / past;
-                let volume = 1.0 + dilatation(strain);
-                let adjugate = [1.0 + strain[1], 1.0 + strain[0], -strain[2]];
-                adjugate.map(|g| pressure * g / volume)
-            }
-            Rheology::Linear => IDENTITY.map(|unit| half * (lag[0] + lag[1]) * unit),
-        }
+        strain: &Symmetric,
+        internal: &Symmetric,
+        fraction: f64,
+    ) -> Option<Tangent> {
+        of_law!(self.rheology, shear_tangent(spring, strain, internal, fraction))
+    }
+
+    /// As [`Self::shear_tangent`], of [`Self::volumetric_stress`].
+    pub fn volumetric_tangent(
+        &self,
+        spring: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+        fraction: f64,
+    ) -> Option<Tangent> {
+        of_law!(self.rheology, volumetric_tangent(spring, strain, internal, fraction))
     }
 
     /// The force `-∂ψ/∂m_i` in Pa that drives the flow of a branch: its shear part and its
@@ -190,25 +232,7 @@ impl FiniteStrainRubber {
         strain: &Symmetric,
         internal: &Symmetric,
     ) -> [Symmetric; 2] {
-        match self.rheology {
-            Rheology::NeoHookean => {
-                // μ/2 (C_i⁻¹ C C_i⁻¹ - C_i⁻¹) + Λ/4 (det C / det C_i - 1) C_i⁻¹
-                let (c, past) = (one_plus(strain), one_plus(internal));
-                let g = inverse(&past);
-                let pulled = sandwich(&g, &c);
-                let volume = determinant(&c) / determinant(&past) - 1.0;
-                [
-                    [0, 1, 2].map(|i| 0.5 * branch.shear * (pulled[i] - g[i])),
-                    g.map(|g| 0.25 * branch.volumetric * volume * g),
-                ]
-            }
-            // The energy knows m - m_i alone, and T = 2 ∂ψ/∂m.
-            Rheology::Linear => {
-                let tensors = [strain, internal, &difference(strain, internal)];
-                [self.shear_stress(branch, tensors), self.volumetric_stress(branch, tensors)]
-                    .map(|stress| stress.map(|t| 0.5 * t))
-            }
-        }
+        of_law!(self.rheology, driving_force(branch, strain, internal))
     }
 
     /// Power in Pa/s that a branch turns into heat, `-∂ψ/∂m_i : dm_i/dt` with the flow rule:

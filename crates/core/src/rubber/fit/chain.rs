@@ -1,4 +1,4 @@
-//! The sweeps that are fitted together, with what is known of their shifts beforehand.
+//! The sweeps that are fitted together, with first values of their shifts.
 
 use super::model::{FreeVerticals, Series};
 use super::result::LeftOut;
@@ -8,10 +8,10 @@ use super::{FitError, FitOptions, GivenShift, SAME_TEMPERATURE_K, Sweep, Vertica
 use crate::rubber::VerticalShift;
 use std::f64::consts::LN_10;
 
-/// A `log10 a_T` that is that of the reference, but for rounding in a table.
+/// Largest `log10 a_T` that counts as that of the reference, for rounding in a table.
 const NO_SHIFT_DECADES: f64 = 1e-6;
 
-/// Sweeps by ascending temperature that hang together.
+/// Connected sweeps by ascending temperature.
 #[derive(Debug)]
 pub(super) struct Chain {
     pub sweeps: Vec<Sweep>,
@@ -19,18 +19,18 @@ pub(super) struct Chain {
     pub reference: usize,
     /// Temperature of the reference in °C, if temperatures are known.
     pub reference_c: Option<f64>,
-    /// ln a of every sweep, where the fit starts or, if `given`, what it takes.
+    /// ln a of every sweep: start of the fit or, if `given`, fixed values.
     pub ln_shifts: Vec<f64>,
-    /// Whether the shifts are not to be fitted.
+    /// Whether the shifts are given instead of fitted.
     pub given: bool,
     /// Given factors about the reference, of a master curve that has no temperature itself.
     pub curve_factors: Vec<GivenShift>,
     pub vertical: VerticalChoice,
-    /// Sweeps that nothing joins to these.
+    /// Sweeps that cannot be joined to these.
     pub left_out: Vec<LeftOut>,
     /// Temperatures of the pairs that E'' and tan δ have joined, in °C.
     pub joined_by_loss_c: Vec<[f64; 2]>,
-    /// Whether a sweep lies behind a pair whose shift hardly shows, seen from the reference.
+    /// Whether a pair of sweeps with a poorly determined shift lies between a sweep and the reference.
     pub uncertain: Vec<bool>,
     /// The colder sweep of each such pair.
     loose: Vec<usize>,
@@ -39,8 +39,7 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// ln b of a sweep that follows from the choice; where factors are fitted it is what they are
-    /// compared with.
+    /// ln b of a sweep by the choice; where factors are fitted, their reference.
     pub fn ln_known_vertical(&self, sweep: usize) -> f64 {
         let temperature_c = self.sweeps[sweep].temperature_c;
         let known = temperature_c.zip(self.reference_c).zip(known_vertical(self.vertical));
@@ -68,9 +67,9 @@ impl Chain {
         })
     }
 
-    /// By what ln a of a sweep may be off beyond what the scatter says, where pairs between it and
-    /// the reference hardly show their shift: each of them may be anywhere from no shift to sweeps
-    /// that just touch. Along a power law a shift is open by what the vertical factor is, over the slope.
+    /// Possible error of ln a of a sweep beyond the scatter, from pairs with a poorly determined shift between it and
+    /// the reference: each shift may be anything from zero to that of sweeps that just touch. Along a power law it is
+    /// the error of the vertical factor over the slope.
     pub fn slack(&self, sweep: usize, ln_shifts: &[f64]) -> f64 {
         let between = self.between(sweep);
         let of = |k: &usize| {
@@ -87,8 +86,7 @@ impl Chain {
         loose + self.featureless.iter().filter(inside).map(by_factor).sum::<f64>()
     }
 
-    /// By what ln b of a sweep may be off beyond what the scatter says, where pairs between it and the
-    /// reference lie along a power law.
+    /// Possible error of ln b of a sweep beyond the scatter, from pairs along a power law between it and the reference.
     pub fn vertical_slack(&self, sweep: usize) -> f64 {
         let between = self.between(sweep);
         let inside = |k: &&usize| between.contains(*k);
@@ -105,8 +103,8 @@ impl Chain {
         WALK_PER_ROOT_K * (celsius(&self.sweeps[k + 1]) - celsius(&self.sweeps[k])).sqrt()
     }
 
-    /// Where a fit of vertical factors starts: from the known ones, from none, from both ends of
-    /// what is likely, and from what tan δ, which no factor changes, says of the shifts.
+    /// Starts of a fit of vertical factors: the known ones, none, both ends of the likely range, and the shifts by tan
+    /// δ, which no factor changes.
     pub fn starts(&self) -> Vec<Start> {
         let sweeps = self.sweeps.len();
         let mut starts =
@@ -226,7 +224,7 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
     })
 }
 
-/// All sweeps with shift factors that are taken as they are.
+/// All sweeps with given shift factors.
 ///
 /// # Errors
 /// [`FitError::NoShiftFactor`], [`FitError::Reference`], [`FitError::NoReference`].
@@ -271,7 +269,7 @@ pub(super) fn given(
     Ok(chain)
 }
 
-/// The factor at the temperature of a master curve: the wanted one, else the one that is 1.
+/// The factor at the temperature of a master curve: the one asked for, else the one that is 1.
 fn curve_reference(given: &[GivenShift], wanted: Option<f64>) -> Result<GivenShift, FitError> {
     match wanted {
         Some(wanted_c) => factor(given, wanted_c).map_err(|_| FitError::Reference {
@@ -306,8 +304,7 @@ fn nearest(sweeps: &[Sweep], wanted_c: f64) -> Result<usize, FitError> {
     })
 }
 
-/// The sweeps divided by the vertical factors that are known, about 0 °C: good enough to join
-/// them, before there is a reference.
+/// The sweeps divided by the known vertical factors about 0 °C, to join them before the reference is chosen.
 fn reduced(sweeps: &[Sweep], vertical: VerticalChoice) -> Vec<Sweep> {
     let Some(shift) = known_vertical(vertical) else { return sweeps.to_vec() };
     let factor =

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 /// Covariance `s² (JᵀJ)⁻¹` of the linearised fit in the logarithms of the parameters.
 pub(super) struct Covariance {
-    /// The place of each parameter among the rows of `root`; none for a time at its limit.
+    /// Row of each parameter in `root`; `None` for a time at its limit.
     places: Vec<Option<usize>>,
     /// `s V S⁻¹` of the singular values of J = U S Vᵀ: the covariance is `root rootᵀ`.
     root: DMatrix<f64>,
@@ -39,7 +39,7 @@ impl Covariance {
     }
 
     /// Covariance of some parameters; `None` with one at its limit.
-    pub fn of(&self, columns: &[usize]) -> Option<DMatrix<f64>> {
+    pub fn block(&self, columns: &[usize]) -> Option<DMatrix<f64>> {
         let places: Option<Vec<usize>> =
             columns.iter().map(|column| self.places[*column]).collect();
         let root = self.root.select_rows(&places?);

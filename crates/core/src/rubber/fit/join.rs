@@ -1,21 +1,20 @@
 //! The shift between two sweeps by curves that need not rise: loss modulus and loss factor.
 //!
-//! Of a glass, or of a rubber on its plateau, E' changes by no more than it scatters while E''
-//! changes by an order of magnitude. The hotter sweep is moved along the frequency, and of all
-//! places the one counts where the two curves differ least (root mean square of logarithms at the
-//! points that overlap). The place must be better than others by far, or the curves are flat and
-//! say nothing.
+//! In a glass, or a rubber on its plateau, E' changes by no more than it scatters while E'' changes by an order of
+//! magnitude. The hotter sweep is moved along the frequency to the shift at which the two curves differ least (root
+//! mean square of logarithms at the points that overlap). This minimum must be far below other values, or the curves
+//! are flat and do not determine the shift.
 
 use super::{Sweep, SweepPoint};
 use std::f64::consts::LN_10;
 
-/// Places tried per decade.
+/// Shifts tried per decade.
 const TRIALS_PER_DECADE: f64 = 40.0;
 /// Points of each sweep that must overlap the other.
 const LEAST_POINTS: usize = 2;
 /// Root mean square difference (relative) above which two curves are not the same.
 const LARGEST_MISFIT: f64 = 0.15;
-/// How many times the misfit of the best place that of the worst must be.
+/// Least ratio of the largest misfit to the smallest.
 const CONTRAST: f64 = 3.0;
 
 /// A curve: ln of a measured quantity over ln of the frequency.
@@ -31,7 +30,7 @@ pub(super) fn ln_loss_factor(point: &SweepPoint) -> f64 {
     (point.loss_modulus / point.storage_modulus).ln()
 }
 
-/// `ln a_hotter - ln a_colder`, never positive; `None` where the curves do not tell.
+/// `ln a_hotter - ln a_colder`, never positive; `None` if the curves do not determine it.
 pub(super) fn best_place(colder: &Sweep, hotter: &Sweep, quantities: &[Quantity]) -> Option<f64> {
     let [from, to] = ends(hotter);
     let [cold_from, _] = ends(colder);

@@ -14,9 +14,8 @@ const LARGEST_C2_K: f64 = 1e5;
 /// none has a positive energy, without WLF for fewer than three factors or where they do not
 /// determine it.
 ///
-/// The better one has the smaller residual variance, sum of squares over degrees of freedom. Every
-/// temperature weighs the same: that laws are no more than approximations is what they miss
-/// factors by, rather than noise.
+/// The better one has the smaller residual variance, sum of squares over degrees of freedom. All temperatures have the
+/// same weight: deviations come from the laws being approximations rather than from noise.
 pub(super) fn fit_laws(shifts: &[ShiftFactor], reference_c: f64) -> Vec<FittedLaw> {
     let others: Vec<ShiftFactor> = shifts
         .iter()
@@ -208,7 +207,7 @@ mod tests {
             exponent
         };
         approx::assert_relative_eq!(exponent(&factors, &covariance), 1.5, max_relative = 1e-12);
-        // One factor that is off and says so does no harm.
+        // One factor with a large error and a wide interval has little effect.
         factors[3].1 += 1.0;
         assert!((exponent(&factors, &covariance) - 1.5).abs() > 1.0);
         covariance[(3, 3)] = 1e4;

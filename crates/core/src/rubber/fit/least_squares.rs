@@ -4,9 +4,9 @@ use argmin::core::{CostFunction, Error, Executor, Gradient, Hessian, State};
 use argmin::solver::trustregion::{Steihaug, TrustRegion};
 use nalgebra::{DMatrix, DVector};
 
-/// More than ten times what a fit that converges takes.
+/// More than ten times the iterations of a converging fit.
 const MAXIMUM_ITERATIONS: u64 = 200;
-/// Relative to the largest singular value of the Jacobian; flatter directions are left alone.
+/// Relative to the largest singular value of the Jacobian; parameters do not change along flatter directions.
 const FLAT: f64 = 1e-12;
 /// Of the offset, see [`Minimum::offset`]; a thousandth of a standard error.
 const CONVERGED_OFFSET: f64 = 1e-3;
@@ -27,9 +27,9 @@ pub(super) struct Minimum {
     pub parameters: DVector<f64>,
     /// Root mean square of the residuals.
     pub rms: f64,
-    /// What is left of the residuals in the tangent space, relative to what is orthogonal to it, per
-    /// degree of freedom: the distance to the minimum in standard errors (Bates & Watts,
-    /// Technometrics 23, 179, 1981, doi:10.1080/00401706.1981.10486255).
+    /// Part of the residuals in the tangent space over the part orthogonal to it, per degree of freedom: the distance
+    /// to the minimum in standard errors (Bates & Watts, Technometrics 23, 179, 1981,
+    /// doi:10.1080/00401706.1981.10486255).
     pub offset: f64,
 }
 
@@ -73,7 +73,7 @@ impl<P: LeastSquares> Hessian for MeanSquare<'_, P> {
     }
 }
 
-/// Minimises the sum of squares from a start; `None` where the residuals are no numbers.
+/// Minimises the sum of squares from a start; `None` if a residual is not a number.
 pub(super) fn minimise<P: LeastSquares>(problem: &P, start: DVector<f64>) -> Option<Minimum> {
     let steihaug = Steihaug::new().with_epsilon(1e-12).ok()?;
     let run = Executor::new(MeanSquare(problem), TrustRegion::new(steihaug))

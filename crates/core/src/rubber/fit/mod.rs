@@ -11,6 +11,16 @@
 //! deviations, every point and both moduli with the same weight. Relaxation times are free within
 //! a decade of the measured range, the number of terms follows from a criterion. The vertical
 //! factor b_T is 1 unless a choice says otherwise ([`VerticalChoice`]).
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `sweep` | measured sweeps, options, and what may be wrong with them |
+//! | `chain`, `shift`, `join` | the order of the sweeps and first shift factors, by storage modulus, loss modulus or loss factor |
+//! | `model` | residuals of a Prony series and their derivatives |
+//! | `least_squares` | a trust region on the Gauss-Newton model |
+//! | `terms`, `verticals` | the number of terms; vertical factors fitted with the shifts |
+//! | `law` | WLF and Arrhenius through shift factors |
+//! | `covariance`, `result` | intervals; what a fit gives |
 
 mod chain;
 mod covariance;

@@ -44,7 +44,7 @@ pub(super) struct Prony {
     pub verticals: Option<FreeVerticals>,
 }
 
-/// Vertical factors that are fitted, and what is known of them beforehand: from one sweep to the
+/// Vertical factors that are fitted, and their prior: from one sweep to the
 /// next ln b changes by a normal deviate about 0. As a residual with the standard deviation of all
 /// others that is
 ///
@@ -146,14 +146,13 @@ impl Prony {
         Series { ln_equilibrium: parameters[0], terms, ln_shifts, ln_verticals }
     }
 
-    /// The place of the shift of a sweep among the parameters; the reference has none, nor have
-    /// given shifts.
+    /// Index of the shift of a sweep among the parameters; `None` for the reference and for given shifts.
     pub fn shift_index(&self, sweep: usize) -> Option<usize> {
         let free = self.given_shifts.is_none();
         free.then(|| self.index(1 + 2 * self.terms, sweep)).flatten()
     }
 
-    /// The place of the vertical factor of a sweep among the parameters, if it is free.
+    /// Index of the vertical factor of a sweep among the parameters, if it is free.
     pub fn vertical_index(&self, sweep: usize) -> Option<usize> {
         let shifts = if self.given_shifts.is_some() { 0 } else { self.sweeps - 1 };
         let free = &self.verticals.as_ref()?.free;

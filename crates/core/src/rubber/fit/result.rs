@@ -1,4 +1,4 @@
-//! What a fit gives: a rubber with intervals, its misfit, shift factors and their law.
+//! The result of a fit: a rubber with intervals, its misfit, shift factors and their law.
 
 use super::chain::Chain;
 use super::covariance::Covariance;
@@ -48,7 +48,7 @@ pub struct ShiftFactor {
     /// was given.
     pub confidence_95: Option<f64>,
     /// Whether the moduli do not determine it: its interval is wider than 0.3 decades on either side,
-    /// or storage moduli change by little more than they scatter. It is no part of a law.
+    /// or storage moduli change by little more than they scatter. It is left out of the law.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub uncertain: bool,
     /// The factor of the moduli, if there is a vertical shift.
@@ -76,7 +76,7 @@ pub struct FittedVertical {
     pub residual: Option<f64>,
 }
 
-/// A sweep that nothing joins to the others.
+/// A sweep that cannot be joined to the others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LeftOut {
     /// Temperature in °C.
@@ -301,7 +301,12 @@ fn vertical(chain: &Chain, fitted: &Fitted, covariance: &Covariance) -> Option<F
                 free().filter_map(|k| factor(k, series)).collect()
             };
             let others: Vec<_> = alternatives.iter().map(factors).collect();
-            fit_vertical(&factors(series), &others, &covariance.of(&columns)?, chain.reference_c?)
+            fit_vertical(
+                &factors(series),
+                &others,
+                &covariance.block(&columns)?,
+                chain.reference_c?,
+            )
         }
     }
 }

@@ -17,11 +17,11 @@ use std::ops::Range;
 
 /// Points of each of two sweeps that must lie in the moduli of the other.
 const LEAST_COMMON_POINTS: usize = 2;
-/// Change of ln E' over a sweep that tells their shift: samples of one rubber differ by some
-/// per cent from clamping to clamping.
+/// Least change of ln E' over a sweep that determines its shift: samples of one rubber differ by some per cent from
+/// clamping to clamping.
 const LEAST_CHANGE: f64 = 0.05;
 
-/// Standard deviation of ln tan δ over two sweeps, in those of its scatter, that tells a shift from a
+/// Least standard deviation of ln tan δ over two sweeps, in units of its scatter, that distinguishes a shift from a
 /// vertical factor.
 const LEAST_CONTRAST: f64 = 2.0;
 
@@ -33,23 +33,23 @@ const AGREEMENT: f64 = 0.1 * std::f64::consts::LN_10;
 pub(super) struct FirstShifts {
     /// ln a of every sweep relative to the first one of its group.
     pub ln_shifts: Vec<f64>,
-    /// The sweeps that hang together, in order.
+    /// Groups of connected sweeps, in order.
     pub groups: Vec<Range<usize>>,
-    /// The colder one of each pair that E'' and tan δ have joined for want of common E'.
+    /// The colder one of each pair joined by E'' and tan δ, since they have no common E'.
     pub by_loss: Vec<usize>,
-    /// The colder one of each pair whose shift hardly shows: E' changes by little more than it
-    /// scatters, and E'' and tan δ are flat or tell of another shift.
+    /// The colder one of each pair with a poorly determined shift: E' changes by little more than it scatters, and E''
+    /// and tan δ are flat or give another shift.
     pub uncertain: Vec<usize>,
 }
 
-/// Where the hotter of two neighbours belongs.
+/// How the hotter of two neighbours is joined.
 struct Pair {
     ln_shift: f64,
     by_loss: bool,
     uncertain: bool,
 }
 
-/// Joins neighbours, and begins a new group where nothing joins them.
+/// Joins neighbours, and begins a new group where they cannot be joined.
 pub(super) fn first_shifts(sweeps: &[Sweep]) -> FirstShifts {
     let mut first = FirstShifts {
         ln_shifts: vec![0.0],
@@ -119,7 +119,7 @@ pub(super) fn featureless(colder: &Sweep, hotter: &Sweep) -> bool {
     let values: Vec<f64> = colder.points.iter().chain(&hotter.points).map(ln_loss_factor).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    // What a point differs from the mean of its neighbours by has 3/2 of the variance of a point.
+    // The difference of a point and the mean of its neighbours has 3/2 of the variance of a point.
     let middle = |three: &[SweepPoint]| {
         let [a, b, c] = [&three[0], &three[1], &three[2]].map(ln_loss_factor);
         (b - 0.5 * (a + c)).powi(2) / 1.5
@@ -127,7 +127,7 @@ pub(super) fn featureless(colder: &Sweep, hotter: &Sweep) -> bool {
     let of = |sweep: &Sweep| sweep.points.windows(3).map(middle).collect::<Vec<_>>();
     let scatter = [of(colder), of(hotter)].concat();
     let variance = scatter.iter().sum::<f64>() / scatter.len() as f64;
-    // Sweeps of fewer than three points have no scatter, and do not tell.
+    // Sweeps of fewer than three points have no known scatter.
     scatter.is_empty() || squares / values.len() as f64 <= LEAST_CONTRAST.powi(2) * variance
 }
 
@@ -142,7 +142,7 @@ pub(super) fn slope(colder: &Sweep, hotter: &Sweep) -> f64 {
     of(colder).min(of(hotter))
 }
 
-/// By what ln E' changes over a sweep.
+/// Change of ln E' over a sweep.
 fn change(sweep: &Sweep) -> f64 {
     let moduli = || sweep.points.iter().map(|point| point.storage_modulus);
     (moduli().fold(0.0, f64::max) / moduli().fold(f64::INFINITY, f64::min)).ln()

@@ -1,4 +1,4 @@
-//! Measured sweeps and what may be wrong with them.
+//! Measured sweeps and their errors.
 
 use crate::error_kind::{ErrorKind, HasKind};
 use std::ops::RangeInclusive;
@@ -43,7 +43,7 @@ impl ModulusKind {
     }
 }
 
-/// What is done about moduli that change with temperature beside the shift of the frequency.
+/// How moduli change with temperature in addition to the shift of the frequency.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum VerticalChoice {
     /// Nothing: moduli are the same at all temperatures.
@@ -62,7 +62,7 @@ pub enum VerticalChoice {
     },
 }
 
-/// A shift factor that is known from elsewhere.
+/// A given shift factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GivenShift {
     /// Temperature in °C.
@@ -71,7 +71,7 @@ pub struct GivenShift {
     pub log10_shift: f64,
 }
 
-/// What the user decides about a fit.
+/// Options of a fit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FitOptions {
     /// Number of terms; by the criterion if not given.
@@ -84,7 +84,7 @@ pub struct FitOptions {
     pub shift_factors: Option<Vec<GivenShift>>,
 }
 
-/// Why sweeps make no rubber.
+/// Errors of a fit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// No point at all.
@@ -105,8 +105,8 @@ pub enum FitError {
     },
     /// The same frequency twice at one temperature.
     #[error(
-        "the frequency {frequency_hz} Hz stands twice in one sweep: average the points, or give each \
-         temperature in temperature_c"
+        "the frequency {frequency_hz} Hz occurs twice in one sweep: average the points, or give each \
+         its temperature"
     )]
     Duplicate {
         /// Frequency in Hz.
@@ -130,7 +130,7 @@ pub enum FitError {
         "the sweeps at {colder_c} °C (storage modulus {:.4} to {:.4} MPa) and {hotter_c} °C ({:.4} to {:.4} MPa) \
          cannot be shifted onto each other: they have fewer than two points each in common storage moduli, and \
          loss modulus and tan delta do not join them either. Measure at a temperature between them or over more \
-         frequencies, give shift factors that you know with --shift-factors, or fit them apart",
+         frequencies, give shift factors that you know, or fit them apart",
         .colder_mpa[0], .colder_mpa[1], .hotter_mpa[0], .hotter_mpa[1]
     )]
     NoOverlap {
@@ -149,7 +149,7 @@ pub enum FitError {
         .measured_c.iter().map(|t| format!("{t}")).collect::<Vec<_>>().join(", ")
     )]
     Reference {
-        /// The wanted temperature in °C.
+        /// The temperature asked for, in °C.
         wanted_c: f64,
         /// Those of the sweeps in °C.
         measured_c: Vec<f64>,
@@ -169,24 +169,21 @@ pub enum FitError {
     /// Shift factors for a master curve without a temperature, none of them 1.
     #[error(
         "the moduli have no temperature and none of the shift factors is 1: give the temperature of the master \
-         curve with --reference-temperature-c"
+         curve"
     )]
     NoReference,
     /// A vertical shift asks for absolute temperatures.
-    #[error(
-        "a vertical shift needs the temperatures of several sweeps: add the column temperature_c, or leave out \
-         --vertical-shift"
-    )]
+    #[error("a vertical shift needs sweeps at several temperatures")]
     VerticalWithoutTemperature,
-    /// No number of terms, or not the wanted one, gives a rubber.
+    /// No number of terms, or not the given one, gives a rubber.
     #[error(
         "the sweeps have no fit{}: {reason}; give fewer terms, or data over a wider range",
         .terms.map_or(String::new(), |terms| format!(" of {terms} terms"))
     )]
     NoFit {
-        /// The wanted number.
+        /// The given number.
         terms: Option<usize>,
-        /// Why the last one is none.
+        /// Why the last one was rejected.
         reason: &'static str,
     },
 }

@@ -2,7 +2,7 @@
 //!
 //! The misfit has many local minima in the relaxation times. Each number of terms starts twice:
 //! from times spaced evenly in the logarithm, and from the fit with one term less and the new term
-//! where it lowers the misfit most; the better end counts.
+//! where it lowers the misfit most; the better minimum is taken.
 //!
 //! The number of terms minimises the criterion of Schwarz (Ann. Stat. 6, 461, 1978,
 //! doi:10.1214/aos/1176344136), for n residuals and p parameters with the variance
@@ -11,14 +11,14 @@
 //! BIC = n ln(mean r^2) + p ln n
 //! ```
 //!
-//! but is not asked to describe a misfit below a thousandth any better.
+//! but a misfit below a thousandth is not reduced further.
 
 use super::least_squares::{Minimum, ROUND_OFF, minimise};
 use super::model::{Prony, Series, weights};
 use super::{Candidate, FitError};
 use nalgebra::{DMatrix, DVector};
 
-/// More would be neighbours that no data of some noise tell apart.
+/// More terms could not be distinguished by data with noise.
 const MOST_TERMS_PER_DECADE: f64 = 2.0;
 /// Root mean square misfit with which the search ends: no modulus is measured any better.
 const ENOUGH: f64 = 1e-3;
@@ -28,7 +28,7 @@ const PATIENCE: usize = 3;
 const TRIALS_PER_DECADE: f64 = 4.0;
 /// Multiplicative updates of the moduli of a start.
 const UPDATES: usize = 100;
-/// A contribution to both moduli that is nowhere larger, relative, is none.
+/// A term whose relative contribution to both moduli is nowhere larger is left out.
 const VANISHING: f64 = 1e-6;
 /// Beyond this condition number of the Jacobian the singular values are round-off.
 const SINGULAR: f64 = 1e12;
@@ -39,7 +39,7 @@ pub(super) struct Fitted {
     pub problem: Prony,
     pub series: Series,
     pub rms: f64,
-    /// Other numbers of terms that the data do not tell from this one, of free vertical factors.
+    /// Other numbers of terms that fit as well, for free vertical factors.
     pub alternatives: Vec<Series>,
 }
 
@@ -55,8 +55,8 @@ impl Fitted {
     }
 }
 
-/// Fits numbers of terms one after the other from the shifts of a series without terms, up to the
-/// wanted one or until the criterion has its minimum.
+/// Fits numbers of terms one after the other from the shifts of a series without terms, up to the given one or until
+/// the criterion has its minimum.
 ///
 /// # Errors
 /// [`FitError::TooFewPoints`], [`FitError::NoFit`].
@@ -118,7 +118,7 @@ pub(super) fn choose_of_all(
     }
 }
 
-/// As many as leave a degree of freedom beside the variance.
+/// The largest number that leaves a degree of freedom in addition to the variance.
 fn most_determined(data: &Prony) -> usize {
     (2 * data.data.len()).saturating_sub(without_terms(data) + 2) / 2
 }
@@ -148,7 +148,7 @@ fn best_minimum(problem: &Prony, previous: &Series) -> Option<Minimum> {
     ends.min_by(|a, b| a.rms.total_cmp(&b.rms))
 }
 
-/// What a number of terms is worth; the next one starts from `previous`.
+/// The fit of a number of terms, which starts from `previous`.
 pub(super) fn judge(
     problem: Prony,
     found: Option<Minimum>,
@@ -156,7 +156,7 @@ pub(super) fn judge(
 ) -> (Candidate, Option<Fitted>) {
     let terms = problem.terms;
     let Some(minimum) = found else {
-        let rejected = Some("its residuals are no numbers");
+        let rejected = Some("a residual is not a number");
         return (Candidate { terms, rms_misfit: None, bic: None, rejected }, None);
     };
     let mut series = problem.unpack(&minimum.parameters);
@@ -171,7 +171,7 @@ pub(super) fn judge(
     (candidate, rejected.is_none().then_some(fitted))
 }
 
-/// Why a minimum is no rubber.
+/// Why a minimum is not a rubber.
 fn rejection(problem: &Prony, series: &Series, minimum: &Minimum) -> Option<&'static str> {
     let jacobian = problem.logarithmic_jacobian(series);
     let vanishes = |column: usize| jacobian.column(column).amax() < VANISHING;
@@ -197,7 +197,7 @@ fn spaced_start(problem: &Prony, previous: &Series) -> Series {
     with_moduli(problem, &times, previous)
 }
 
-/// The previous terms and the one that goes with them best.
+/// The previous terms and the new one that lowers the misfit most.
 fn inserted_start(problem: &Prony, previous: &Series) -> Option<Series> {
     let step = std::f64::consts::LN_10 / TRIALS_PER_DECADE;
     let [low, high] = reduced_range(problem, &previous.ln_shifts);
@@ -236,7 +236,7 @@ fn with_moduli(problem: &Prony, ln_times: &[f64], previous: &Series) -> Series {
     }
     let normal = shares.tr_mul(&shares);
     let wanted = shares.tr_mul(&DVector::from_element(2 * points, 1.0));
-    // Scaled so that every column alone would do what it can.
+    // Scaled so that each column alone fits the data best.
     let mut moduli = DVector::from_fn(wanted.len(), |i, _| wanted[i] / normal[(i, i)]);
     for _ in 0..UPDATES {
         let sums = &normal * &moduli;

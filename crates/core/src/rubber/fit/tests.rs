@@ -247,7 +247,7 @@ fn impossible_sweeps_are_refused() {
     assert!(refused(&|points| points[3].loss_modulus = f64::NAN).contains("loss modulus is NaN"));
     assert!(refused(&|points| points[3].storage_modulus = -1.0).contains("storage modulus is -1"));
     assert!(refused(&|points| points[3].angular_frequency = 0.0).contains("frequency is 0"));
-    assert!(refused(&|points| points[3] = points[4]).contains("stands twice"));
+    assert!(refused(&|points| points[3] = points[4]).contains("occurs twice"));
     let two = [good.clone(), good];
     let error = fit_sweeps(&two, &FitOptions::default()).unwrap_err();
     assert_eq!(error, FitError::Temperatures);

@@ -102,7 +102,7 @@ impl Tally {
         self.verticals.push(verticals);
     }
 
-    fn of(
+    fn new(
         rubber: &Rubber,
         truth: VerticalShift,
         choice: VerticalChoice,
@@ -151,8 +151,8 @@ const RHO_T: VerticalShift = VerticalShift::RhoT { expansion_per_k: EXPANSION_PE
 fn free_factors_find_what_density_times_temperature_misses() {
     let (rubber, truth) = (broad().scaled(0.1), VerticalShift::Power { exponent: -1.0 });
     let rho_t = VerticalChoice::RhoT { expansion_per_k: EXPANSION_PER_K };
-    assert!(Tally::of(&rubber, truth, rho_t, 0..1).shifts[0] > 0.5);
-    let free = Tally::of(&rubber, truth, FREE, 0..3);
+    assert!(Tally::new(&rubber, truth, rho_t, 0..1).shifts[0] > 0.5);
+    let free = Tally::new(&rubber, truth, FREE, 0..3);
     assert!(free.shifts[2] < 0.15 && free.verticals[2] < 0.1, "{}", free.line());
     // 95 % of 27 are expected inside, and neighbours miss together.
     assert!(free.inside.iter().all(|inside| *inside > 20), "{}", free.line());
@@ -188,7 +188,7 @@ fn table_of_misses() {
     let of = &|(name, rubber, seeds): &(&str, Rubber, u64)| {
         for (truth_name, truth) in truths {
             for (choice_name, choice) in choices {
-                let line = Tally::of(rubber, truth, choice, 00..*seeds).line();
+                let line = Tally::new(rubber, truth, choice, 00..*seeds).line();
                 println!("| {name} | {truth_name} | {choice_name} | {line} |");
             }
         }

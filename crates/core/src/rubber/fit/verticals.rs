@@ -1,13 +1,12 @@
 //! Vertical factors that are fitted together with the shift factors.
 //!
-//! Along a power law of the moduli a vertical factor and a shift are the same change, so that moduli
-//! of some noise determine no more than a combination of both. What is known beforehand decides the
-//! rest: the factors are those of density times temperature but for a random walk over temperature
-//! ([`WALK_PER_ROOT_K`]), which enters the fit as residuals of its own ([`FreeVerticals`]) and so the
-//! intervals too.
+//! Along a power law of the moduli a vertical factor and a shift are the same change, so that moduli of some noise
+//! determine no more than a combination of both. A prior decides the rest: the factors are those of density times
+//! temperature up to a random walk over temperature ([`WALK_PER_ROOT_K`]), which enters the fit, and so the intervals,
+//! as residuals ([`FreeVerticals`]).
 //!
 //! The misfit has a minimum for about every branch by which a sweep can be moved along the curve. The
-//! fit therefore starts from several laws of the factors; the end with the least criterion counts:
+//! fit therefore starts from several laws of the factors; the result with the least criterion is taken:
 //!
 //! ```text
 //! n ln(mean r^2) + p ln n + sum over neighbours ((ln b_{k+1} - ln b_k) / step_k)^2
@@ -15,10 +14,9 @@
 //!
 //! with the n residuals r of moduli and p parameters.
 //!
-//! Where a spectrum has no features, a few terms have some and the shifts follow them: fits of
-//! other numbers of terms, as good as the chosen one, then have other shifts, and so have factors that
-//! are not fitted but none at all, ρT or the ends of the interval about it. The largest difference of what is as good from the
-//! chosen fit is added to the interval.
+//! Where a spectrum has no features, a few terms have some and the shifts follow them: fits of other numbers of terms,
+//! as good as the chosen one, then have other shifts, and so have fits with fixed factors: none, ρT or the ends of the
+//! interval about it. The largest difference between the chosen fit and one that is as good is added to the interval.
 
 use super::least_squares::{ROUND_OFF, minimise};
 use super::model::{FreeVerticals, Prony, Series};
@@ -32,14 +30,14 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 pub(super) const WALK_PER_ROOT_K: f64 = 0.035;
 /// Rounds of terms and factors; two are usual.
 const MOST_ROUNDS: usize = 4;
-/// Rounds of the noise, by which the prior is weighed; three are usual.
+/// Rounds of the noise that weights the prior; three are usual.
 const MOST_UPDATES: usize = 12;
 /// Quantiles (95 %) of chi square for two degrees of freedom a term: one, two and three terms more or
 /// less.
 const NEIGHBOURS: [f64; 3] = [5.991, 9.488, 12.592];
-/// Difference of criteria below which two ends are the same but for round-off.
+/// Difference of criteria below which two results are the same to round-off.
 const CLEARLY_BETTER: f64 = 0.1;
-/// Relative change of the noise that no interval shows.
+/// Relative change of the noise that has no effect on intervals.
 const SAME_NOISE: f64 = 0.02;
 
 /// Where a fit starts.
@@ -54,7 +52,7 @@ pub(super) struct Start {
 /// A fit with the criterion by which starts are compared.
 type End = (f64, Fitted, Vec<Candidate>);
 
-/// The best fit of all starts, the number of terms by criterion or as wanted. The factors that are
+/// The best fit of all starts, the number of terms by criterion or as given. The factors that are
 /// free are those of `data.verticals`, its noise is not used.
 ///
 /// # Errors
@@ -114,7 +112,7 @@ fn from_terms_of(data: &Prony, end: &End, start: &Start) -> Option<End> {
     Some((criterion(&fitted), fitted, end.2.clone()))
 }
 
-/// Few terms with free factors move whole sweeps away from the others and never find back. So the
+/// With few terms, free factors move sweeps away from the others for good. So the
 /// number of terms is chosen with the factors held, then they are freed, as long as the number grows:
 /// fewer terms bend the shifts until their own bumps fit.
 fn from_start(data: &Prony, wanted: Option<usize>, start: &Start) -> Result<End, FitError> {
@@ -137,12 +135,12 @@ fn from_start(data: &Prony, wanted: Option<usize>, start: &Start) -> Result<End,
         for fit in all.iter_mut().chain([&mut chosen]) {
             fit.series.ln_verticals.clone_from(&start.ln_verticals);
         }
-        // Freed, a term too many may vanish: then the next number that holds.
+        // With free factors a superfluous term may vanish: then the next number of terms is taken.
         let fewer = all.iter().rev().filter(|fit| fit.problem.terms < terms);
         let mut fits = std::iter::once(&chosen).chain(fewer).filter_map(|fit| freed(data, fit));
         let Some((mut fitted, _)) = fits.find(|(_, usable)| *usable) else { break };
         fitted.alternatives = alternatives(data, &fitted, &all);
-        // Not of the same number of terms, perhaps.
+        // The number of terms may differ.
         if as_good(&chosen, &fitted) {
             fitted.alternatives.push(chosen.series.clone());
         }
@@ -165,7 +163,7 @@ fn alternatives(data: &Prony, chosen: &Fitted, all: &[Fitted]) -> Vec<Series> {
         let n = 2.0 * data.data.len() as f64;
         n * (mean_square(fit) / mean_square(chosen)).ln() < NEIGHBOURS[difference - 1]
     };
-    // Even those that may not be used, for want of a term that shows, say what shifts are possible.
+    // Even fits that may not be used, because a term is negligible, show which shifts are possible.
     let freed = all.iter().filter(near).filter_map(|fit| freed(data, fit));
     freed.map(|(fit, _)| fit).filter(indistinct).map(|fit| fit.series).collect()
 }

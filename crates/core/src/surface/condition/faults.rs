@@ -1,4 +1,4 @@
-//! The faults of one scan, found, judged and removed in their order.
+//! Detection and removal of the faults of one scan, in order.
 
 use super::{Conditioning, ConditioningError, EndPlates, Handling};
 use crate::numerics::statistics::least_squares_line;
@@ -10,7 +10,7 @@ use crate::surface::faults::{
 };
 use crate::surface::resample::Grid;
 
-/// Merges repeated positions or refuses a scan that has some, and judges how the track was sampled.
+/// Merges repeated positions or refuses a scan that has some, and reports how evenly the track was sampled.
 pub(super) fn sampling(
     scan: &RawScan,
     conditioning: &Conditioning,
@@ -48,7 +48,7 @@ pub(super) struct Findings {
     pub overview: Option<FaultOverview>,
 }
 
-/// Removes the faults that the recipe wants removed from a scan on equal spacing, and reports all.
+/// Removes the faults that are to be removed from a scan on equal spacing, and reports all.
 pub(super) fn heights(grid: &mut Grid, conditioning: &Conditioning) -> Findings {
     let measured = grid.clone();
     let mut work =
@@ -60,7 +60,7 @@ pub(super) fn heights(grid: &mut Grid, conditioning: &Conditioning) -> Findings 
     work.jumps();
     work.tilt();
     let Inspection { reports, found, .. } = work;
-    Findings { reports, out_of_range, spikes, overview: FaultOverview::of(&measured, &found) }
+    Findings { reports, out_of_range, spikes, overview: FaultOverview::new(&measured, &found) }
 }
 
 /// A scan while its faults are looked for.
@@ -92,7 +92,7 @@ impl Inspection<'_> {
         let total = self.grid.heights.len();
         let road = start..total - end.min(total - start);
         let rest = self.grid.heights[road.clone()].to_vec();
-        let (before, after) = (self.texture(), Texture::of(&rest, self.grid.spacing));
+        let (before, after) = (self.texture(), Texture::new(&rest, self.grid.spacing));
         let cut = self.conditioning.end_plates == EndPlates::Cut;
         let criterion = format!(
             "runs at the ends with a level {threshold} interquartile ranges outside the quartiles, \
@@ -158,7 +158,7 @@ impl Inspection<'_> {
         if !jumps.is_empty() {
             let mut heights = self.grid.heights.clone();
             removed = remove_jumps(&mut heights, &jumps, self.conditioning.jump_margin_points);
-            after = Texture::of(&heights, self.grid.spacing);
+            after = Texture::new(&heights, self.grid.spacing);
             if self.conditioning.level_jumps == Handling::Missing {
                 self.grid.heights = heights;
             }
@@ -191,7 +191,7 @@ impl Inspection<'_> {
     }
 
     fn texture(&self) -> Texture {
-        Texture::of(&self.grid.heights, self.grid.spacing)
+        Texture::new(&self.grid.heights, self.grid.spacing)
     }
 
     fn share(&self, count: usize) -> f64 {

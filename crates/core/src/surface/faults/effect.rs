@@ -16,7 +16,7 @@ pub struct Texture {
 
 impl Texture {
     /// Of equidistant heights in metres, `spacing` metres apart; NaN where missing.
-    pub fn of(heights: &[f64], spacing: f64) -> Self {
+    pub fn new(heights: &[f64], spacing: f64) -> Self {
         let first = heights.windows(2).map(|z| z[1] - z[0]);
         let second = heights.windows(3).map(|z| z[0] - 2.0 * z[1] + z[2]);
         Self { rms_slope: mean_square(first).sqrt() / spacing, high_frequency: mean_square(second) }
@@ -95,23 +95,23 @@ mod tests {
 
     #[test]
     fn differences_are_those_of_the_valid_neighbours() {
-        let texture = Texture::of(&[0.0, 1.0, 4.0, f64::NAN, 2.0, 2.0], 0.5);
+        let texture = Texture::new(&[0.0, 1.0, 4.0, f64::NAN, 2.0, 2.0], 0.5);
         // Steps 1, 3, 0; one second difference, 2.
         assert_eq!(texture.rms_slope, (10.0_f64 / 3.0).sqrt() / 0.5);
         assert_eq!(texture.high_frequency, 4.0);
-        assert_eq!(Texture::of(&[], 1.0), Texture { rms_slope: 0.0, high_frequency: 0.0 });
+        assert_eq!(Texture::new(&[], 1.0), Texture { rms_slope: 0.0, high_frequency: 0.0 });
     }
 
     #[test]
     fn the_shortest_wave_has_its_exact_weight() {
         // At the Nyquist wavenumber 16 sin^4 is 16, the mean square of the wave 1.
         let wave: Vec<f64> = (0..10).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        assert_eq!(Texture::of(&wave, 1.0).high_frequency, 16.0);
+        assert_eq!(Texture::new(&wave, 1.0).high_frequency, 16.0);
     }
 
     #[test]
     fn a_ratio_over_nothing_is_none() {
-        let flat = Texture::of(&[0.0; 4], 1.0);
+        let flat = Texture::new(&[0.0; 4], 1.0);
         let report = FaultReport::new("spikes", String::new(), "kept", 0, 0.0);
         assert_eq!(report.with_effect(flat, flat).high_frequency_ratio, None);
     }

@@ -37,7 +37,7 @@ impl FarHeights {
     }
 
     /// What the far ones among the cells of a grid are, ascending; `None` for none.
-    pub fn of(grid: &Grid, cells: impl Iterator<Item = usize>) -> Option<Self> {
+    pub fn new(grid: &Grid, cells: impl Iterator<Item = usize>) -> Option<Self> {
         let position_mm = |cell: usize| (grid.origin + cell as f64 * grid.spacing) * 1e3;
         cells.fold(None, |found: Option<Self>, cell| {
             let (first_mm, count) =
@@ -62,12 +62,12 @@ mod tests {
         let cells: Vec<usize> = (0..far.len()).filter(|&i| far[i]).collect();
         assert_eq!(cells, [12, 700]);
         let grid = Grid { origin: 1.0, spacing: 1e-3, heights };
-        let found = FarHeights::of(&grid, cells.into_iter()).unwrap();
+        let found = FarHeights::new(&grid, cells.into_iter()).unwrap();
         assert_eq!(found.count, 2);
         // Sums of a few decimal fractions.
         approx::assert_relative_eq!(found.first_mm, 1012.0, max_relative = 1e-12);
         approx::assert_relative_eq!(found.last_mm, 1700.0, max_relative = 1e-12);
-        assert_eq!(FarHeights::of(&grid, std::iter::empty()), None);
+        assert_eq!(FarHeights::new(&grid, std::iter::empty()), None);
     }
 
     #[test]

@@ -1,5 +1,12 @@
 //! What an instrument got wrong: detectors with a stated criterion, and points turned into missing
 //! ones.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `spikes`, `jumps`, `plates`, `far` | single heights, level jumps, end plates, heights that no road has |
+//! | `sampling` | resolution of the heights, repeated positions, uneven steps |
+//! | `effect` | what a fault changes of the texture, and its report |
+//! | `overview` | where the faults of a scan are, to be drawn |
 
 mod effect;
 mod far;

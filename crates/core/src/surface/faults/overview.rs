@@ -66,7 +66,7 @@ pub struct FaultOverview {
 
 impl FaultOverview {
     /// Of a scan as measured, on equal spacing; none if nothing was found and nothing is missing.
-    pub fn of(measured: &Grid, found: &[FoundPoints]) -> Option<Self> {
+    pub fn new(measured: &Grid, found: &[FoundPoints]) -> Option<Self> {
         let heights = &measured.heights;
         let missing: Vec<usize> = (0..heights.len()).filter(|&i| heights[i].is_nan()).collect();
         let missing = FoundPoints { fault: MISSING, points: missing };
@@ -93,13 +93,13 @@ impl FaultOverview {
             marks(measured, kind.fault, furthest)
         };
         let marks = all.iter().map(thin).collect();
-        let closeup = steepest(heights, found).map(|centre| Closeup::of(measured, &all, centre));
+        let closeup = steepest(heights, found).map(|centre| Closeup::new(measured, &all, centre));
         Some(Self { stretches, marks, closeup })
     }
 }
 
 impl Closeup {
-    fn of(measured: &Grid, found: &[&FoundPoints], centre: usize) -> Self {
+    fn new(measured: &Grid, found: &[&FoundPoints], centre: usize) -> Self {
         let end = (centre + CLOSEUP_HALF_WIDTH + 1).min(measured.heights.len());
         let range = centre.saturating_sub(CLOSEUP_HALF_WIDTH)..end;
         let within = |kind: &&FoundPoints| {
@@ -157,8 +157,8 @@ mod tests {
     #[test]
     fn a_scan_without_faults_needs_no_overview() {
         let none = FoundPoints { fault: "spikes", points: vec![] };
-        assert_eq!(FaultOverview::of(&grid(vec![1.0; 10]), &[none]), None);
-        assert_eq!(FaultOverview::of(&grid(vec![]), &[]), None);
+        assert_eq!(FaultOverview::new(&grid(vec![1.0; 10]), &[none]), None);
+        assert_eq!(FaultOverview::new(&grid(vec![]), &[]), None);
     }
 
     #[test]
@@ -167,7 +167,7 @@ mod tests {
         (heights[25], heights[27], heights[4000]) = (1e-3, 3e-3, -2e-3);
         heights[7000..7500].fill(f64::NAN);
         let spikes = FoundPoints { fault: "spikes", points: vec![25, 27, 4000] };
-        let overview = FaultOverview::of(&grid(heights), &[spikes]).unwrap();
+        let overview = FaultOverview::new(&grid(heights), &[spikes]).unwrap();
         assert_eq!(overview.stretches.len(), 800);
         assert_eq!((overview.stretches[2].lowest_mm, overview.stretches[2].highest_mm), (0.0, 3.0));
         assert!(overview.stretches[720].highest_mm.is_nan());
@@ -190,7 +190,7 @@ mod tests {
             FoundPoints { fault: END_PLATES, points: (0..30).collect() },
             FoundPoints { fault: "spikes", points: vec![100, 200] },
         ];
-        let overview = FaultOverview::of(&grid(heights), &found).unwrap();
+        let overview = FaultOverview::new(&grid(heights), &found).unwrap();
         let closeup = overview.closeup.unwrap();
         assert_eq!(closeup.points.len(), 101);
         assert_eq!(closeup.points[50][1], -2.0);
@@ -202,10 +202,10 @@ mod tests {
     #[test]
     fn a_fault_at_the_very_end_and_one_between_gaps_are_no_trouble() {
         let jump = |points: Vec<usize>| [FoundPoints { fault: "level jumps", points }];
-        let ends = FaultOverview::of(&grid(vec![0.0, 1e-3]), &jump(vec![0])).unwrap();
+        let ends = FaultOverview::new(&grid(vec![0.0, 1e-3]), &jump(vec![0])).unwrap();
         assert_eq!(ends.closeup.unwrap().points.len(), 2);
         let lonely = grid(vec![f64::NAN, 1e-3, f64::NAN]);
         let found = [FoundPoints { fault: "out of range", points: vec![1] }];
-        assert_eq!(FaultOverview::of(&lonely, &found).unwrap().closeup, None);
+        assert_eq!(FaultOverview::new(&lonely, &found).unwrap().closeup, None);
     }
 }

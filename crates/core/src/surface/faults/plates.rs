@@ -3,14 +3,14 @@
 use super::median_of_valid;
 use statrs::statistics::{Data, OrderStatistics};
 
-/// Blocks a scan is judged in: each half a per cent of it.
+/// Number of blocks that a scan is divided into: each half a per cent of it.
 const BLOCKS: usize = 200;
 /// Fewest points of a block.
 const LEAST_POINTS: usize = 16;
 /// Median step of a flat block over that of the scan.
 const FLAT: f64 = 0.1;
 
-/// Number of points at the start and at the end that are end plates, judged in blocks of half a
+/// Number of points at the start and at the end that are end plates, in blocks of half a
 /// per cent of the scan: from the end inwards as long as the level of a block, its median, lies
 /// more than `threshold` interquartile ranges of all levels outside their quartiles, or its median
 /// absolute step is below a tenth of that of the scan; blocks without any height between such

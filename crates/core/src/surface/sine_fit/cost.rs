@@ -150,18 +150,18 @@ impl Solver<LogarithmicCost, AmplitudeState> for UntilStationary {
     }
 }
 
-/// Minimise from a start; whether the gradient is small enough is for the caller to judge.
+/// Minimise from a start; the caller checks whether the gradient is small enough.
 ///
 /// The trust region judges a step by the fall of the cost, which round-off hides once the gradient
 /// is below some 1e-9; Newton steps, judged by the gradient, go on from there.
 pub(super) fn minimise(cost: &LogarithmicCost, start: DVector<f64>) -> Minimum {
-    let steihaug = Steihaug::new().with_epsilon(1e-12).expect("a positive tolerance");
+    let failed = Minimum { amplitudes: start.clone(), gradient_norm: f64::NAN, iterations: 0 };
+    let Ok(steihaug) = Steihaug::new().with_epsilon(1e-12) else { return failed };
     let solver = UntilStationary { region: TrustRegion::new(steihaug), tolerance: NEWTON_BASIN };
     let run = Executor::new(cost.clone(), solver)
-        .configure(|state| state.param(start.clone()).max_iters(MAXIMUM_ITERATIONS))
+        .configure(|state| state.param(start).max_iters(MAXIMUM_ITERATIONS))
         .timer(false)
         .run();
-    let failed = Minimum { amplitudes: start, gradient_norm: f64::NAN, iterations: 0 };
     let Ok(mut result) = run else { return failed };
     let iterations = result.state.get_iter();
     let Some(amplitudes) = result.state.take_param() else { return failed };
@@ -173,7 +173,7 @@ pub(super) fn minimise(cost: &LogarithmicCost, start: DVector<f64>) -> Minimum {
 /// Newton steps for as long as the gradient falls; returns the last point and its gradient norm.
 /// Directions in which the cost does not change are left alone.
 ///
-/// A step that makes the gradient grow is halved: waves that are hard to tell apart leave a valley
+/// A step that makes the gradient grow is halved: waves that are hard to distinguish leave a valley
 /// so flat along its bottom that a whole step leaves the reach of the quadratic model, but along a
 /// Newton step the gradient falls at first.
 fn newton(

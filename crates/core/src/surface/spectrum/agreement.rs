@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A spectrum of a finite scan holds `R(s) r(s)`, with the autocorrelation r of its window, which is
-//! divided out. What is left differs for reasons that are no fault: the window weighs the middle of
+//! divided out. The remaining difference has legitimate causes: the window weighs the middle of
 //! a scan more than its ends, so that the two see different mean squares, the less so the more scans
 //! are averaged; the correlation leaves out the wrap-around that a transform makes; pairs beside
 //! gaps, and a trend, count differently, by about the lag over the length of a scan. Therefore the
@@ -62,10 +62,10 @@ pub fn agreement(
 }
 
 impl PowerSpectrum {
-    /// Autocovariance in m² at a lag in metres, as it stands in the spectrum: the sum over
+    /// Autocovariance in m² at a lag in metres, from the spectrum: the sum over
     /// wavenumbers of `C1D cos(q s) dq`.
     pub fn autocovariance(&self, lag: f64) -> f64 {
-        // A rotation from one wavenumber to the next in place of a cosine for each; its round-off
+        // A rotation from one wavenumber to the next instead of a cosine for each; its round-off
         // grows like that of a sum.
         let (sin, cos) = (self.wavenumber_step * lag).sin_cos();
         let (mut x, mut y, mut sum) = (1.0, 0.0, 0.0);

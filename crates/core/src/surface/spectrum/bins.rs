@@ -56,7 +56,7 @@ impl PowerSpectrum {
             (first < length).then(|| {
                 let index = bin(first);
                 let edge = 10_f64.powf((index + 1.0) / per_decade as f64);
-                // The edge is rounded: the entries beside it are told by their own logarithm.
+                // The edge is rounded: entries next to it are assigned by their own logarithm.
                 start = ((edge / self.wavenumber_step) as usize).clamp(first + 1, length);
                 while start > first + 1 && bin(start - 1) != index {
                     start -= 1;

@@ -183,7 +183,7 @@ mod tests {
         // C2D = exp(-q² a²/2) a²/(2 π) and C1D = 2 a exp(-q² a²/2) / sqrt(2 π), mean square 1.
         let a = 1e-3;
         let bell = |q: f64| (-(q * a).powi(2) / 2.0).exp();
-        // Power laws in place of a Gaussian: the slope is wrong by the width of a piece where the
+        // Power laws instead of a Gaussian: the slope is wrong by the width of a piece where the
         // integrand has its inverse root, so the error is of order 3/2 in it.
         for (per_decade, tolerance) in [(50, 2e-2), (200, 2e-2 / 8.0)] {
             let mut q = grid(1.0, 4, per_decade);

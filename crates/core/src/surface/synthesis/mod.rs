@@ -6,6 +6,15 @@
 //! heights by a translation (`translation`) whose autocorrelation is known in closed form: the HDC of
 //! the surface is the prescribed one exactly, not only before the map. The instrument (`instrument`)
 //! then averages over its spot, tilts, adds noise and loses points.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `parameters` | the parameters of a synthetic surface and their ranges |
+//! | `field` | Gaussian fields of prescribed autocorrelation by circulant embedding |
+//! | `translation` | heights with skewness from a Gaussian field |
+//! | `instrument` | spot, tilt, noise and drop-outs of a profilometer |
+//! | `text` | the text file that it would write |
+//! | `random` | random numbers that are the same on every machine |
 
 mod field;
 mod instrument;

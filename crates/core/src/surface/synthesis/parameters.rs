@@ -72,9 +72,9 @@ pub struct OuterRegime {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SynthesisError {
     /// A parameter is outside its range.
-    #[error("synth.{parameter} is {value}; it must be {allowed}")]
+    #[error("{parameter} is {value}; it must be {allowed}")]
     OutOfRange {
-        /// Key of the parameter.
+        /// Name of the parameter, with its unit.
         parameter: &'static str,
         /// Its value, in SI.
         value: f64,
@@ -84,8 +84,7 @@ pub enum SynthesisError {
     /// The scans are too finely resolved for their length.
     #[error(
         "a scan needs {points:.3e} points with its surroundings, the limit is {limit}: raise \
-         synth.spacing_m or synth.spot_diameter_m, or lower synth.length_m or \
-         synth.parallel_correlation_length_m"
+         the spacing or the spot diameter, or lower the length or the parallel correlation length"
     )]
     TooManyPoints {
         /// Points of one period of the surface.
@@ -96,7 +95,7 @@ pub enum SynthesisError {
     /// No random surface has the asked height-difference correlation.
     #[error(
         "no surface has this height-difference correlation: {:.2} % of its power spectrum would be \
-         negative; lower synth.plateau_sharpness ({plateau_sharpness}), or bring the Hurst exponents closer",
+         negative; lower the plateau sharpness, {plateau_sharpness}, or bring the Hurst exponents closer",
         negative_share * 100.0
     )]
     NotRealisable {
@@ -228,26 +227,17 @@ mod tests {
     fn parameters_outside_their_range_are_named() {
         type Spoil = fn(&mut SyntheticAsphalt);
         let cases: [(Spoil, &str); 9] = [
-            (
-                |p| p.hurst_exponent = 1.0,
-                "synth.hurst_exponent is 1; it must be above 0 and below 1",
-            ),
-            (|p| p.scans = 0, "synth.scans is 0; it must be at least 1 and finite"),
-            (|p| p.length = f64::NAN, "synth.length_m is NaN; it must be positive and finite"),
-            (|p| p.spacing = -2e-6, "synth.spacing_m is -0.000002; it must be positive and finite"),
-            (
-                |p| p.length = 3e-6,
-                "synth.length_m is 0.000003; it must be at least 0.000004 and finite",
-            ),
-            (|p| p.skewness = -4.5, "synth.skewness is -4.5; it must be from -4 to 4"),
-            (
-                |p| p.missing_fraction = 0.6,
-                "synth.missing_fraction is 0.6; it must be from 0 to 0.5",
-            ),
-            (|p| p.noise = f64::INFINITY, "synth.noise_m is inf; it must be at least 0 and finite"),
+            (|p| p.hurst_exponent = 1.0, "hurst_exponent is 1; it must be above 0 and below 1"),
+            (|p| p.scans = 0, "scans is 0; it must be at least 1 and finite"),
+            (|p| p.length = f64::NAN, "length_m is NaN; it must be positive and finite"),
+            (|p| p.spacing = -2e-6, "spacing_m is -0.000002; it must be positive and finite"),
+            (|p| p.length = 3e-6, "length_m is 0.000003; it must be at least 0.000004 and finite"),
+            (|p| p.skewness = -4.5, "skewness is -4.5; it must be from -4 to 4"),
+            (|p| p.missing_fraction = 0.6, "missing_fraction is 0.6; it must be from 0 to 0.5"),
+            (|p| p.noise = f64::INFINITY, "noise_m is inf; it must be at least 0 and finite"),
             (
                 |p| p.outer_regime.as_mut().unwrap().crossover_lag = 0.01,
-                "synth.outer_regime.crossover_lag_m is 0.01; it must be above 0 and below 0.0035",
+                "outer_regime.crossover_lag_m is 0.01; it must be above 0 and below 0.0035",
             ),
         ];
         for (spoil, message) in cases {

@@ -18,7 +18,7 @@ pub(super) fn normal_pair(rng: &mut impl Rng) -> (f64, f64) {
 
 /// Length of a run, geometric on 1, 2, ... with the given mean (at least 1).
 pub(super) fn run_length(mean: f64, rng: &mut impl Rng) -> usize {
-    // A mean of 1 divides by minus infinity, which gives the run of one point that is wanted.
+    // A mean of 1 divides by minus infinity, which gives the required run of one point.
     1 + (uniform(rng).ln() / (-1.0 / mean).ln_1p()).floor() as usize
 }
 
@@ -45,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn run_lengths_have_the_wanted_mean() {
+    fn run_lengths_have_the_given_mean() {
         let mut rng = Pcg64::new(3, 4);
         assert!((0..100).all(|_| run_length(1.0, &mut rng) == 1));
         let mean = 20.0;

@@ -174,7 +174,7 @@ fn impossible_and_oversized_surfaces_are_refused() {
         ..bare(1)
     };
     let message = corner.generate().unwrap_err().to_string();
-    assert!(message.contains("lower synth.plateau_sharpness (8)"), "{message}");
+    assert!(message.contains("lower the plateau sharpness, 8"), "{message}");
     let vast = SyntheticAsphalt { length: 1e3, ..bare(1) };
     let message = vast.generate().unwrap_err().to_string();
     assert!(message.contains("2.000e8 points"), "{message}");

@@ -79,13 +79,13 @@ mod tests {
 
     #[test]
     fn heights_have_the_autocorrelation_asked_for() {
-        for (skewness, wanted) in [(-1.0, 0.3), (-1.5, 0.95), (0.5, -0.2), (0.0, 0.6)] {
+        for (skewness, given) in [(-1.0, 0.3), (-1.5, 0.95), (0.5, -0.2), (0.0, 0.6)] {
             let map = Translation::with_skewness(skewness);
-            let rho = map.gaussian_autocorrelation(wanted);
+            let rho = map.gaussian_autocorrelation(given);
             let rest = (1.0 - rho * rho).sqrt();
             let found =
                 expectation(|u| map.height(u) * expectation(|v| map.height(rho * u + rest * v)));
-            assert!((found - wanted).abs() < 1e-11, "skewness {skewness}: {found} for {wanted}");
+            assert!((found - given).abs() < 1e-11, "skewness {skewness}: {found} for {given}");
         }
     }
 

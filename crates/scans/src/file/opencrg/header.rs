@@ -45,7 +45,7 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// The header, the bytes behind it and the number of their first line.
+    /// The header, the bytes after it and the number of their first line.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8], usize), FileProblem> {
         let mut parser = Parser::default();
         let mut rest = bytes;
@@ -70,7 +70,7 @@ impl Header {
     }
 
     /// # Errors
-    /// A file without such channels, or with units that are no lengths.
+    /// A file without such channels, or with units that are not lengths.
     pub(super) fn sections(&self) -> Result<Sections, FileProblem> {
         let is_section =
             |channel: &Channel| channel.name.to_lowercase().starts_with("long section");

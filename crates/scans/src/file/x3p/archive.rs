@@ -1,6 +1,6 @@
 //! Members of the zip archive, within limits.
 //!
-//! Members are looked up by name and unpacked as they are read; none is in memory as a whole, and
+//! Members are looked up by name and unpacked as they are read; none is completely in memory, and
 //! nothing is ever written under a name from the archive.
 
 use super::super::error::{FileProblem, Place};
@@ -116,15 +116,15 @@ impl Read for Member<'_> {
 }
 
 impl Member<'_> {
-    /// What an error of reading says of the archive.
+    /// The error of reading, for the archive.
     pub(super) fn damaged(&self, error: &io::Error) -> FileProblem {
         let place = Place::Member(self.name.clone());
         FileProblem::Damaged { place, reason: error.to_string() }
     }
 
-    /// Reads the rest and gives the checksum of all.
+    /// Reads the remaining bytes and returns the checksum of all.
     pub(super) fn finish(mut self) -> Result<String, FileProblem> {
-        // The archive compares a sum of its own at the end.
+        // The archive compares its checksum at the end.
         io::copy(&mut self, &mut io::sink()).map_err(|error| self.damaged(&error))?;
         if self.file.limit() == 0 {
             let (place, unpacked) = (Place::Member(self.name), self.limit + 1);
@@ -133,7 +133,7 @@ impl Member<'_> {
         Ok(hexadecimal(&self.checksum.finalize()))
     }
 
-    /// Reads the rest and compares the checksum of all with the stated one, if there is one.
+    /// Reads the remaining bytes and compares the checksum of all with the stated one, if there is one.
     pub(super) fn check(self, stated: Option<&str>) -> Result<(), FileProblem> {
         let name = self.name.clone();
         let found = self.finish()?;

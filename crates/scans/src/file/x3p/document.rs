@@ -10,11 +10,11 @@ use std::io::{self, BufRead, BufReader, Read};
 
 /// Deeper than any document of the standard.
 const DEEPEST: usize = 32;
-/// More elements, data apart, than any document of the standard.
+/// More elements, without the data, than any document of the standard has.
 const MOST_ELEMENTS: usize = 100_000;
 /// Longest tag, comment or text in bytes; a text may be longer where it is not read.
 const LONGEST: usize = 1 << 18;
-/// Heights that a document may give before it says how many there are.
+/// Heights that a document may give before it states their number.
 const MOST_UNDECLARED: u64 = 1 << 16;
 /// The shortest datum, `<Datum/>`.
 const SHORTEST_DATUM: u64 = 8;
@@ -240,7 +240,7 @@ impl State {
             text => text.parse().map_err(|_| unexpected(place(), "a height", text, "a number"))?,
         };
         if number == 1 {
-            // What the document says is believed as far as it can hold that many.
+            // The stated number is used as far as the document can hold that many.
             let most = (self.size / SHORTEST_DATUM).min(LARGEST_POINTS);
             let points = self.document.points().unwrap_or(0).min(most);
             self.document.data.reserve_exact(points as usize);
@@ -293,7 +293,7 @@ fn character(entity: &BytesRef<'_>) -> Result<char, FileProblem> {
     }
 }
 
-/// A reader that gives no more than [`LONGEST`] bytes to one event: the parser holds each whole.
+/// A reader that gives no more than [`LONGEST`] bytes to one event: the parser holds a complete event.
 struct Bounded<R> {
     reader: BufReader<R>,
     left: usize,

@@ -1,6 +1,12 @@
-//! X3P: a zip archive with `main.xml`, its checksum and, unless the heights stand in the XML
+//! X3P: a zip archive with `main.xml`, its checksum and, unless the heights are in the XML
 //! document, a binary matrix `bindata/data.bin` and a mask `bindata/valid.bin` of the points that
 //! are valid, one bit each, the lowest first.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `archive` | members of the zip archive, within limits |
+//! | `document` | the texts and heights of the XML document |
+//! | `write` | X3P files from scans |
 
 mod archive;
 mod document;

@@ -116,9 +116,9 @@ impl HeightDifferenceCorrelation {
         self.sample(&log_spaced_lags(self.maximum_lag(), per_decade))
     }
 
-    /// Average over scans of equal spacing, each lag weighted by its pairs: the correlation of all
-    /// pairs pooled. It ends at the shortest of the largest lags, so that every scan stands behind
-    /// every lag and none of the steps in the average comes from a scan dropping out.
+    /// Average over scans of equal spacing, each lag weighted by its pairs: the correlation of all pairs pooled. It
+    /// ends at the shortest of the largest lags, so that every scan contributes to every lag and the average has no
+    /// steps where a scan ends.
     ///
     /// # Errors
     /// No correlations; spacings that differ by more than 1e-9 of the first.
@@ -304,8 +304,8 @@ fn direct_value(heights: &[f64], lag: usize) -> f64 {
 
 /// Smallest `2^a 3^b 5^c`, at least `minimum`: the lengths at which the FFT is fast.
 fn smooth_length(minimum: usize) -> usize {
-    let is_smooth = |n: &usize| {
-        let mut rest = *n;
+    let is_smooth = |n: usize| {
+        let mut rest = n;
         for factor in [2_usize, 3, 5] {
             while rest.is_multiple_of(factor) {
                 rest /= factor;
@@ -313,13 +313,17 @@ fn smooth_length(minimum: usize) -> usize {
         }
         rest == 1
     };
-    (minimum.max(1)..).find(is_smooth).expect("a power of two follows every number")
+    let mut length = minimum.max(1);
+    while !is_smooth(length) {
+        length += 1;
+    }
+    length
 }
 
 /// Correlations of scans, in parallel, in the order of the scans.
 ///
-/// `maximum_lag` in metres; half the length of each scan without it. Each scan is transformed on
-/// its own, so the result does not depend on the number of threads or on the other scans.
+/// `maximum_lag` in metres; half the length of each scan without it. Each scan is transformed separately, so the result
+/// does not depend on the number of threads or on the other scans.
 ///
 /// # Errors
 /// The first scan that cannot be correlated, see [`CorrelationPlan::correlate`].

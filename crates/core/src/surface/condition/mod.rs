@@ -172,23 +172,19 @@ pub enum ConditioningError {
     /// A value of the recipe is out of its range.
     #[error("{key} is {value}; {demand}")]
     Parameter { key: &'static str, value: f64, demand: &'static str },
-    /// Points at the position of the one before, and the recipe wants such scans refused.
+    /// Points at the position of the one before, where such scans are refused.
     #[error(
-        "scan {scan}: {count} points are at the position of the point before, the first at \
-         {position_mm} mm; mend the file, or set ingest.conditioning.repeated_positions = \"mean\" \
-         to take the mean of their heights"
+        "scan {scan}: {count} points are at the position of the point before, the first at {position_mm} mm"
     )]
     Repeated { scan: String, count: usize, position_mm: f64 },
     /// The positions make no grid.
     #[error("scan {scan}: {source}")]
     Grid { scan: String, source: GridError },
     /// The scan is shorter than one window.
-    #[error(
-        "scan {scan}: {length_mm} mm long, shorter than one window; lower window_length_mm = {window_mm}"
-    )]
+    #[error("scan {scan}: {length_mm} mm long, shorter than one window of {window_mm} mm")]
     TooShort { scan: String, length_mm: f64, window_mm: f64 },
     /// Too few heights are left for the form of the whole scan.
-    #[error("scan {scan}: {source}; lower the order of `form`")]
+    #[error("scan {scan}: {source}")]
     Form { scan: String, source: FormError },
     /// No window was kept.
     #[error("scan {scan}: none of {windows} windows is left; the first: {reason}")]
@@ -301,18 +297,18 @@ pub fn condition(
     // The cell that a window starts with, by the position it was given.
     let start = |window: &LineScan| ((window.origin - grid.origin) / grid.spacing).round() as usize;
     let ranges = kept.iter().map(|window| start(window)..start(window) + window.heights.len());
-    report.far = FarHeights::of(&grid, ranges.flatten().filter(|&cell| is_far[cell]));
+    report.far = FarHeights::new(&grid, ranges.flatten().filter(|&cell| is_far[cell]));
     Ok((kept, report))
 }
 
-/// Cuts the windows, removes their form and tells of each in the report.
+/// Cuts the windows, removes their form and reports on each.
 fn cut(
     grid: &Grid,
     conditioning: &Conditioning,
     report: &mut ConditioningReport,
 ) -> Result<Vec<LineScan>, ConditioningError> {
     let total = grid.heights.len();
-    // A window of a whole number of cells must not lose one to round-off.
+    // A window of an integer number of cells must not lose one to round-off.
     let points = conditioning.window_length_mm.map_or(total, |window_mm| {
         (window_mm / 1e3 / grid.spacing * (1.0 + 1e-9)).floor() as usize
     });

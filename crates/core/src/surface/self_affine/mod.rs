@@ -6,7 +6,7 @@
 //!
 //! In `x = log10 s`, `y = log10 C` this is a hinge, `y = a + 2 H min(0, x - c)`. For every pair of
 //! neighbouring lags that may hold the hinge `c` the rest is linear, so the global least-squares
-//! solution is found by looking at all of them; there is no start and no iteration.
+//! solution is the best of all pairs, without a start or an iteration.
 
 use super::correlation::{
     CorrelationError, CorrelationSample, HeightDifferenceCorrelation, check_equal_spacing,
@@ -41,7 +41,7 @@ pub struct LagRange {
 
 /// Self-affine parameters of an average correlation.
 ///
-/// Neighbouring lags of a scan are correlated, so their residuals say little of the uncertainty.
+/// Neighbouring lags of a scan are correlated, so their residuals do not show the uncertainty.
 /// The intervals come from the spread over scans: a jackknife that leaves out one scan at a time,
 /// Student's t with one degree of freedom less than scans, in `log10` for the two lengths. `None`
 /// for fewer than three scans.
@@ -77,8 +77,7 @@ pub struct SelfAffineFit {
 pub enum SelfAffineError {
     /// Too few lags.
     #[error(
-        "{lags} lags between {:.4} and {:.4} mm, at least {FEWEST_ON_SLOPE} are needed; lower \
-         characterise.self_affine_shortest_lag_mm, or raise self_affine_longest_lag_mm or longest_lag_mm",
+        "{lags} lags between {:.4} and {:.4} mm, at least {FEWEST_ON_SLOPE} are needed",
         shortest * 1e3, longest * 1e3
     )]
     TooFewLags {
@@ -92,7 +91,7 @@ pub enum SelfAffineError {
     /// No logarithm.
     #[error(
         "the correlation at a lag of {:.4} mm is {value} m2, no positive number: the scan is flat or \
-         repeats itself there; characterise.self_affine_longest_lag_mm ends the fit before",
+         repeats itself there",
         lag * 1e3
     )]
     NotPositive {
@@ -102,10 +101,7 @@ pub enum SelfAffineError {
         value: f64,
     },
     /// The correlation does not grow with the lag.
-    #[error(
-        "the fit gave H = {hurst_exponent}, the correlation does not grow with the lag; shorten the \
-         range, characterise.self_affine_shortest_lag_mm to self_affine_longest_lag_mm"
-    )]
+    #[error("the fit gave H = {hurst_exponent}, the correlation does not grow with the lag")]
     NotGrowing {
         /// The Hurst exponent found.
         hurst_exponent: f64,
@@ -135,7 +131,7 @@ pub fn fit_self_affine(
         per_decade: 20,
     });
     let lags = lags_within(range, longest, first.spacing);
-    let sums = PooledSums::of(scans, &lags);
+    let sums = PooledSums::new(scans, &lags);
     let points = sums.samples();
     let hinge = Hinge::fit(&points, range)?;
     let intervals = match scans.len() {
@@ -193,7 +189,7 @@ struct PooledSums<'a> {
 }
 
 impl<'a> PooledSums<'a> {
-    fn of(scans: &[HeightDifferenceCorrelation], lags: &'a [usize]) -> Self {
+    fn new(scans: &[HeightDifferenceCorrelation], lags: &'a [usize]) -> Self {
         let squares = |&lag: &usize| scans.iter().map(|scan| sum_of_squares(scan, lag)).sum();
         let pairs = |&lag: &usize| scans.iter().map(|scan| scan.pairs[lag]).sum();
         Self {
@@ -204,9 +200,8 @@ impl<'a> PooledSums<'a> {
         }
     }
 
-    /// The sums of all scans but one of them. A sum of n positive terms loses `n 1e-16` of the
-    /// remaining ones where they are of a size; a correlation that is decided by the scan that is
-    /// left out loses more.
+    /// The sums of all scans but one of them. A sum of n positive terms loses `n 1e-16` of the remaining ones if they
+    /// have similar sizes; a correlation that is decided by the scan that is left out loses more.
     fn without(&self, scan: &HeightDifferenceCorrelation) -> Self {
         let squares = |(&lag, sum): (&usize, &f64)| sum - sum_of_squares(scan, lag);
         let pairs = |(&lag, sum): (&usize, &u64)| sum - scan.pairs[lag];
@@ -272,7 +267,7 @@ impl Hinge {
         let x: Vec<f64> = samples.iter().map(|sample| sample.lag.log10()).collect();
         let y: Vec<f64> = samples.iter().map(|sample| sample.value.log10()).collect();
         let on_a_lag = (FEWEST_ON_SLOPE..=x.len()).map(|left| Self::at(x[left - 1], &x, &y));
-        // One lag alone above the hinge would be met exactly whatever it is: no plateau.
+        // A single lag above the hinge is always met exactly, which does not show a plateau.
         let in_between = FEWEST_ON_SLOPE..(x.len() - 1).max(FEWEST_ON_SLOPE);
         let candidates = on_a_lag.chain(in_between.map(|left| Self::between(left, &x, &y)));
         let best = candidates
@@ -284,7 +279,7 @@ impl Hinge {
         })
     }
 
-    /// Best fit with the hinge at a given place.
+    /// Best fit with the hinge at a given lag.
     fn at(hinge: f64, x: &[f64], y: &[f64]) -> Self {
         let u: Vec<f64> = x.iter().map(|x| (x - hinge).min(0.0)).collect();
         let (level, slope) = line(&u, y);
@@ -293,7 +288,7 @@ impl Hinge {
 
     /// Best fit with the first `left` points on the slope and the others on the plateau. Their
     /// free fits are independent; the residual counts the points as the hinge assigns them, so a
-    /// crossing outside its interval is judged for what it is.
+    /// crossing outside its interval is compared as it is.
     fn between(left: usize, x: &[f64], y: &[f64]) -> Self {
         let (offset, slope) = line(&x[..left], &y[..left]);
         let level = y[left..].iter().sum::<f64>() / (y.len() - left) as f64;

@@ -59,8 +59,7 @@ pub enum DepthError {
     /// Sampled too coarsely: this is a profile for evenness, with no texture in it.
     #[error(
         "its points are {:.4} mm apart and ISO 13473-1 asks for at most 1 mm: a profile for evenness \
-         does not hold the texture; measure with a finer spacing, or lower \
-         ingest.conditioning.lateral_resolution_um",
+         does not hold the texture; measure with a finer spacing",
         spacing * 1e3
     )]
     Spacing {
@@ -70,7 +69,7 @@ pub enum DepthError {
     /// The low-pass filter has no effect.
     #[error(
         "the low-pass filter of {:.4} mm needs points less than half of that apart, they are {:.4} mm \
-         apart; raise characterise.profile_depth.low_pass_mm, 2.4 mm in ISO 13473-1",
+         apart",
         low_pass * 1e3, spacing * 1e3
     )]
     LowPass {
@@ -81,8 +80,7 @@ pub enum DepthError {
     },
     /// A segment of a few points has no peaks in its halves.
     #[error(
-        "a segment of {:.1} mm has {points} of at least {FEWEST_SEGMENT_POINTS} points; raise \
-         characterise.profile_depth.segment_mm, 100 mm in ISO 13473-1",
+        "a segment of {:.1} mm has {points} of at least {FEWEST_SEGMENT_POINTS} points",
         segment * 1e3
     )]
     FewPoints {
@@ -93,7 +91,7 @@ pub enum DepthError {
     },
     /// Shorter than a segment.
     #[error(
-        "its {:.1} mm are shorter than a segment (characterise.profile_depth.segment_mm = {})",
+        "its {:.1} mm are shorter than a segment of {} mm",
         length * 1e3, segment * 1e3
     )]
     Short {
@@ -154,7 +152,7 @@ fn segment_points(
     if low_pass <= 2.0 * spacing {
         return Err(DepthError::LowPass { low_pass, spacing });
     }
-    // A segment of a whole number of points must not lose one to round-off.
+    // A segment of an integer number of points must not lose one to round-off.
     let points = (segment / spacing * (1.0 + 1e-9)).floor() as usize;
     if points < FEWEST_SEGMENT_POINTS {
         return Err(DepthError::FewPoints { segment, points });

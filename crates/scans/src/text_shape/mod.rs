@@ -2,6 +2,14 @@
 //!
 //! Encoding, separator, decimal mark, header and columns are found from the content, units only
 //! where the file states them. Nothing is read by this: it is a proposal for the recipe.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `encoding` | the encoding, by the content |
+//! | `layout` | ways to split lines into cells, and the lines of points that they find |
+//! | `names` | names of columns, units and the mark where data begin |
+//! | `missing` | marks of missing heights |
+//! | `proposal` | the description that would read the text |
 
 pub(crate) mod encoding;
 mod layout;
@@ -23,7 +31,7 @@ use layout::{Body, Layout};
 pub use missing::{RepeatedHeight, repeated_inside};
 use names::{comment_of, footer, is_comment, marker, regrouped, states_unit, unit_in, unit_of_two};
 
-/// Lines by which separator, decimal mark and columns are found; more say nothing new.
+/// Lines by which separator, decimal mark and columns are found; more add nothing.
 const MOST_LINES: usize = 2000;
 /// Sheets of a workbook that are looked at.
 const MOST_SHEETS: usize = 50;
@@ -37,7 +45,7 @@ pub struct TextShape {
     pub sheet: Option<String>,
     /// Label of the encoding, for `encoding`.
     pub encoding: &'static str,
-    /// What stands between the cells.
+    /// The separator of the cells.
     pub separator: Separator,
     /// The decimal mark.
     pub decimal_mark: DecimalMark,
@@ -47,9 +55,9 @@ pub struct TextShape {
     pub skip_lines: usize,
     /// The line before the names of the columns, if it marks the start of the data.
     pub skip_until: Option<String>,
-    /// The start of the first written line behind the points.
+    /// The start of the first written line after the points.
     pub stop_at: Option<String>,
-    /// Whether a line of names stands before the points.
+    /// Whether a line of names precedes the points.
     pub header: bool,
     /// The columns; empty ones at the end of the lines are left out.
     pub columns: Vec<TextColumn>,
@@ -61,11 +69,11 @@ pub struct TextShape {
     /// numbers that repeat at the end of the range and far from all other heights, and numbers within
     /// the range that repeat much more often than all others.
     pub missing: Vec<String>,
-    /// Lines before the points that state a unit, as they stand.
+    /// Lines before the points that state a unit, as written.
     pub stated: Vec<String>,
     /// A cell whose thousands are separated, which the reader refuses.
     pub thousands: Option<String>,
-    /// Whether the reader takes the names apart as they are here: between blanks a name of two
+    /// Whether the reader splits the names as here: between blanks a name of two
     /// words is two.
     names_are_cells: bool,
 }
@@ -224,7 +232,7 @@ impl Names {
         let fits =
             |names: &Vec<String>| if blanks { names.len() == width } else { names.len() >= width };
         if is_comment(line, comment) {
-            // Names behind a comment mark are read by nobody, but tell the units.
+            // Names after a comment mark are not read, but state the units.
             let text = line.trim_start().trim_start_matches(|c| Some(c) == comment);
             let names = Some(regrouped(layout.cells(text))).filter(|names| names.len() == width);
             return Self { names: names.unwrap_or_default(), ..none };
@@ -317,7 +325,7 @@ fn with_marks(shape: TextShape, layout: Layout, body: &Body, text: &str) -> Text
 
 /// The first two columns that are the positions of a map, where a third is left for its heights.
 fn map_columns(body: &Body, width: usize) -> Option<(usize, usize)> {
-    /// Positions stand among the first columns.
+    /// Positions are among the first columns.
     const LAST: usize = 4;
     if width < 3 {
         return None;

@@ -6,8 +6,16 @@
 //! sum over k of C1D(q_k) dq = mean of z^2,    q_k = k dq,  dq = 2 π / (N spacing),  k = 0 ... N/2
 //! ```
 //!
-//! to round-off without a window, and with one for the weighted heights (see [`Window`]). Half of it is the two-sided density of Persson's formulae. The
-//! heights are taken about the mean line: what is left of a mean stands at `q = 0`.
+//! to round-off without a window, and with one for the weighted heights (see [`Window`]). Half of it is the two-sided
+//! density of Persson's formulae. The heights are taken about the mean line: what is left of a mean is at `q = 0`.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `window` | windows on the heights of a complete scan |
+//! | `bins` | means over bins of equal width in the logarithm of the wavenumber |
+//! | `hurst` | Hurst exponent from the slope |
+//! | `isotropic` | the spectrum of an isotropic surface from that of a line across it |
+//! | `agreement` | comparison with the height-difference correlation |
 
 mod agreement;
 mod bins;
@@ -228,7 +236,7 @@ impl SpectrumPlan {
         Ok(PowerSpectrum { wavenumber_step, density, routes })
     }
 
-    /// Sides of the two-sided spectrum that a wavenumber of the one-sided one stands for.
+    /// Number of wavenumbers of the two-sided spectrum for one of the one-sided spectrum.
     fn sides(&self, k: usize) -> f64 {
         if k == 0 || 2 * k == self.points { 1.0 } else { 2.0 }
     }

@@ -35,7 +35,7 @@ impl Probe {
     /// after A. Sanner, W.G. Nöhring, L.A. Thimons, T.D.B. Jacobs, L. Pastewka, Appl. Surf. Sci.
     /// Adv. 7 (2022) 100190, doi:10.1016/j.apsadv.2021.100190. The sharpest peak of all scans
     /// decides, not the root mean square curvature: a tip that is too blunt for the peaks alone
-    /// leaves most of a scan as it is. Valleys say nothing, since a tip leaves cusps in them.
+    /// leaves most of a scan as it is. Valleys are not used, since a tip leaves cusps in them.
     /// Heights must grow towards the tip. If the condition holds at no lag, the wavelength is as
     /// long as the longest scan.
     pub fn shortest_reliable_wavelength(&self, scans: &[LineScan]) -> f64 {
@@ -68,7 +68,7 @@ fn tip_lag(scan: &LineScan, radius: f64) -> f64 {
     last.map_or(0.0, |k| lag(k + 1))
 }
 
-/// Largest less smallest of the heights that are there; 0 where none is.
+/// Largest less smallest of the valid heights; 0 without any.
 fn range(heights: &[f64]) -> f64 {
     let largest = heights.iter().copied().fold(f64::NAN, f64::max);
     let smallest = heights.iter().copied().fold(f64::NAN, f64::min);

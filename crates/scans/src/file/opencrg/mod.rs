@@ -18,7 +18,7 @@ use header::{Header, Layout};
 const RECORD: usize = 80;
 
 pub(super) fn is_header(start: &[u8]) -> bool {
-    /// A description may stand before the section of the road.
+    /// A description may come before the section of the road.
     const ENOUGH: usize = 1 << 16;
     let start = &start[..start.len().min(ENOUGH)];
     start.first().is_some_and(|first| b"$*!".contains(first))

@@ -109,7 +109,7 @@ pub enum SineFitError {
         /// Iterations done.
         iterations: u64,
     },
-    /// A stationary point that is no minimum.
+    /// A stationary point that is not a minimum.
     #[error(
         "the wave of {wavelength} m went to amplitude zero where the cost still falls with it ({multiplier:e}); fit fewer waves or more lags"
     )]
