@@ -106,7 +106,7 @@ impl ColumnType {
     }
 
     pub(super) fn of_data_type(data_type: &DataType) -> Option<Self> {
-        use ColumnType::*;
+        use ColumnType::{Boolean, Float, FloatList, Integer, Text, Unsigned32, Unsigned64};
         [Float, Unsigned32, Unsigned64, Integer, Boolean, Text, FloatList]
             .into_iter()
             .find(|kind| kind.data_type() == *data_type)
@@ -152,7 +152,7 @@ pub fn columns<R: Row>() -> Result<Vec<Column>, ArtifactError> {
             })
         })
         .collect::<Result<_, _>>()?;
-    let fields = schema["properties"].as_object().map_or(0, |properties| properties.len());
+    let fields = schema["properties"].as_object().map_or(0, serde_json::Map::len);
     if columns.len() != fields || fields == 0 {
         return Err(ArtifactError::RowType {
             schema: R::SCHEMA.into(),

@@ -34,7 +34,7 @@ fn hash_array(hasher: &mut blake3::Hasher, kind: ColumnType, array: &dyn Array) 
     match kind {
         ColumnType::Float => hash_numbers::<Float64Type>(hasher, array, f64::to_le_bytes),
         ColumnType::Unsigned32 => {
-            hash_numbers::<UInt32Type>(hasher, array, |x| u64::from(x).to_le_bytes())
+            hash_numbers::<UInt32Type>(hasher, array, |x| u64::from(x).to_le_bytes());
         }
         ColumnType::Unsigned64 => hash_numbers::<UInt64Type>(hasher, array, u64::to_le_bytes),
         ColumnType::Integer => hash_numbers::<Int64Type>(hasher, array, i64::to_le_bytes),
@@ -50,7 +50,7 @@ fn hash_array(hasher: &mut blake3::Hasher, kind: ColumnType, array: &dyn Array) 
             }
         }
         ColumnType::FloatList => {
-            for list in array.as_list::<i32>().iter() {
+            for list in array.as_list::<i32>() {
                 let length = list.as_ref().map_or(u64::MAX, |list| list.len() as u64);
                 hasher.update(&length.to_le_bytes());
                 if let Some(list) = list {

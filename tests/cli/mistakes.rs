@@ -29,15 +29,27 @@ fn check(campaign: &Campaign, arguments: &str, code: i32, parts: &[&str]) -> Vec
 
 const WAVE: &str = "solve bem --wave 0.0625:0.01867";
 
-#[test]
-fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out() {
-    let bem = |rest: &str| format!("{WAVE} {rest}");
-    let loaded = |rest: &str| format!("{WAVE} --speed 10 --pressure 1 {rest}");
-    let fem =
-        |rest: &str| format!("solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 {rest}");
-    let text = |text: &str| text.to_owned();
-    let cases: Vec<(String, &[&str])> = vec![
-        // Commands and options.
+/// Arguments, and parts of the answer.
+type Cases = Vec<(String, &'static [&'static str])>;
+
+fn bem(rest: &str) -> String {
+    format!("{WAVE} {rest}")
+}
+
+fn loaded(rest: &str) -> String {
+    format!("{WAVE} --speed 10 --pressure 1 {rest}")
+}
+
+fn fem(rest: &str) -> String {
+    format!("solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 {rest}")
+}
+
+fn text(text: &str) -> String {
+    text.to_owned()
+}
+
+fn with_commands_and_options() -> Cases {
+    vec![
         (text("slove bem"), &["'slove'", "'solve'"]),
         (text("solve bem"), &["--speed <MM_S>", "--wave", "--pressure"]),
         (bem("--speed 10"), &["--pressure <MPA>", "--area <FRACTION>"]),
@@ -49,7 +61,11 @@ fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out()
         (loaded("--tolerance 1e-3 --points 64"), &["--tolerance", "cannot be used with"]),
         (loaded("--modulus 4"), &["--poisson <NU>"]),
         (loaded("--temperature-c 20"), &["--rubber <FILE>"]),
-        // Numbers.
+    ]
+}
+
+fn with_numbers() -> Cases {
+    vec![
         (bem("--speed 0,5 --pressure 1"), &["`0,5`", "--speed", "decimal mark is a point"]),
         (bem("--speed -1 --pressure 1"), &["'-1'", "--speed", "not positive"]),
         (bem("--speed nan --pressure 1"), &["`nan`", "not a finite number"]),
@@ -64,7 +80,11 @@ fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out()
         (loaded("--tolerance 1e-9"), &["1e-9 is not between 1e-8 and 0.5"]),
         (loaded("--tolerance 1%"), &["`1%`", "a fraction (5 % is 0.05)"]),
         (loaded("--modulus 4 --poisson 0.7"), &["poisson_ratio is 0.7", "between 0 and 0.5"]),
-        // Waves.
+    ]
+}
+
+fn with_waves() -> Cases {
+    vec![
         (text("solve bem --wave 0.0625 --speed 10 --pressure 1"), &["'0.0625'", "0.0625:0.01867"]),
         (
             text("solve bem --wave 0.0625,0.01867 --speed 10 --pressure 1"),
@@ -83,7 +103,11 @@ fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out()
             text("solve bem --wave 1:0.1 --wave 1.41421:0.1 --speed 10 --pressure 1"),
             &["1, 1.41421 mm", "simple fractions"],
         ),
-        // Files.
+    ]
+}
+
+fn with_files() -> Cases {
+    vec![
         (loaded("--rubber none.toml"), &["rubber none.toml", "check the path"]),
         (loaded("--rubber scans"), &["rubber scans", "folder", "give the file itself"]),
         (loaded("--rubber scans/track_0.txt"), &["scans/track_0.txt, line", "key = value"]),
@@ -135,7 +159,11 @@ fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out()
             &["--outer-hurst-exponent is 1.5", "below 1"],
         ),
         (text("init rubber.toml"), &["rubber.toml"]),
-        // Stages.
+    ]
+}
+
+fn with_stages() -> Cases {
+    vec![
         (
             text("run recipe.toml --only bem --out none"),
             &["bem needs the results of ingest", "--from ingest"],
@@ -147,7 +175,11 @@ fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out()
         (text("run recipe.toml --threads -1"), &["'-1'", "--threads", "whole number of 0 or more"]),
         (text("run recipe.toml --tolerance 2"), &["2 is not between 1e-8 and 0.5"]),
         (text("status recipe.toml --tolerance 5%"), &["`5%`", "--tolerance"]),
-        // Results.
+    ]
+}
+
+fn with_results() -> Cases {
+    vec![
         (text("export nowhere --format csv"), &["nowhere does not exist", "runs/asphalt"]),
         (text("export recipe.toml --format csv"), &["recipe.toml is a file", "folder of a run"]),
         (text("export scans --format cvs"), &["'cvs'", "csv, markdown"]),
@@ -158,13 +190,31 @@ fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out()
         (text("plot friction scans --to x.pdf"), &["x.pdf", ".svg or .png"]),
         (text("sweep collect none"), &["none", "plan.json"]),
         (text("man sovle"), &["sovle", "did you mean `solve`?"]),
-        // Finite elements.
+    ]
+}
+
+fn with_finite_elements() -> Cases {
+    vec![
         (fem("--columns 4"), &["columns is 4", "8 to 65536"]),
         (fem("--points 64"), &["--points", "--columns"]),
         (fem("--route transiant"), &["'transiant'", "'transient'"]),
         (fem("--drag-periods 3"), &["--drag-periods", "--route transient"]),
         (fem("--height -1"), &["'-1'", "--height", "not positive"]),
-    ];
+    ]
+}
+
+#[test]
+fn mistakes_on_the_command_line_are_answered_with_what_was_typed_and_a_way_out() {
+    let cases: Cases = [
+        with_commands_and_options(),
+        with_numbers(),
+        with_waves(),
+        with_files(),
+        with_stages(),
+        with_results(),
+        with_finite_elements(),
+    ]
+    .concat();
     let campaign = Campaign::new();
     let told: Vec<String> =
         cases.iter().flat_map(|(arguments, parts)| check(&campaign, arguments, 2, parts)).collect();

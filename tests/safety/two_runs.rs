@@ -16,7 +16,7 @@ fn the_second_run_names_the_first_and_the_lock_of_a_killed_one_is_free() {
     );
     let mut command = campaign.command("--quiet run recipe.toml --out out");
     let mut first = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let deadline = Instant::now() + Duration::from_secs(60);
+    let deadline = Instant::now() + Duration::from_mins(1);
     while !campaign.path("out/solves").is_dir() {
         assert!(Instant::now() < deadline, "no solves after a minute");
         assert!(first.try_wait().unwrap().is_none(), "the first run has ended");

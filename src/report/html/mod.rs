@@ -49,7 +49,7 @@ struct Section {
 /// the folder has no results.
 pub fn document(run: &RunView, origin: &Origin) -> Result<String, ReportError> {
     let mut any = false;
-    for stage in Stage::ALL.into_iter() {
+    for stage in Stage::ALL {
         any |= run.stage_manifest(stage.name())?.is_some();
     }
     if !any {

@@ -10,7 +10,7 @@ use maud::{Markup, html};
 impl Report<'_> {
     pub(super) fn provenance(&self) -> Result<Markup, ReportError> {
         let mut manifests = vec![];
-        for stage in Stage::ALL.into_iter() {
+        for stage in Stage::ALL {
             manifests.extend(self.run.stage_manifest(stage.name())?.map(|found| (stage, found)));
         }
         let origin = self.origin;

@@ -100,7 +100,7 @@ fn wave_table(rows: &[ScaleRow], limit: Option<f64>) -> Markup {
                 model(row).into(),
                 number(row.wavelength_mm, 4),
                 number(row.amplitude_mm.mm_to_um(), 4),
-                optional(row.amplitude_confidence_95_mm.map(|half| half.mm_to_um()), 2),
+                optional(row.amplitude_confidence_95_mm.map(crate::units::Units::mm_to_um), 2),
                 number(row.rms_slope, 3),
             ]
         }),

@@ -163,7 +163,7 @@ pub fn run(
     for &waves in &parameters.waves {
         context.check_interrupt()?;
         let in_this = |source| StageError::SineFit { waves, source };
-        let base = parameters.shortest_wavelength_mm.map(|mm| mm.mm_to_m());
+        let base = parameters.shortest_wavelength_mm.map(super::super::units::Units::mm_to_m);
         let (spacing, window) = (correlations.spacing, correlations.window_length);
         let (wavelengths, beyond) = Ladder::new(base, spacing, waves as usize)?.for_scans(
             spacing,

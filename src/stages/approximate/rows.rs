@@ -105,7 +105,7 @@ pub(super) fn scale_rows(waves: u32, fit: &SineFit, intervals: &[Option<f64>]) -
             scale: number,
             wavelength_mm: scale.wavelength.m_to_mm(),
             amplitude_mm: scale.amplitude.m_to_mm(),
-            amplitude_confidence_95_mm: interval.map(|half_width| half_width.m_to_mm()),
+            amplitude_confidence_95_mm: interval.map(crate::units::Units::m_to_mm),
             rms_slope: scale.rms_slope(),
         })
         .collect()

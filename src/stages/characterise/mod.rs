@@ -234,7 +234,7 @@ pub fn run(
     let windows = read_windows(run)?;
     context.check_interrupt()?;
     let (roughness, mut warnings) = roughness_parameters(&windows)?;
-    let longest_lag = parameters.longest_lag_mm.map(|mm| mm.mm_to_m());
+    let longest_lag = parameters.longest_lag_mm.map(super::super::units::Units::mm_to_m);
     let correlations = correlate_scans(&windows, longest_lag)?;
     let average = HeightDifferenceCorrelation::average(&correlations)?;
     context.check_interrupt()?;
@@ -322,12 +322,18 @@ fn self_affine(
     correlations: &[HeightDifferenceCorrelation],
 ) -> (Vec<SelfAffineRow>, Vec<String>) {
     let spacing = correlations.first().map_or(0.0, |c| c.spacing);
-    let most = correlations.iter().map(|c| c.maximum_lag()).min().unwrap_or(0);
+    let most = correlations
+        .iter()
+        .map(asperity_core::surface::HeightDifferenceCorrelation::maximum_lag)
+        .min()
+        .unwrap_or(0);
     let range = LagRange {
-        shortest: parameters.self_affine_shortest_lag_mm.map_or(spacing, |mm| mm.mm_to_m()),
+        shortest: parameters
+            .self_affine_shortest_lag_mm
+            .map_or(spacing, super::super::units::Units::mm_to_m),
         longest: parameters
             .self_affine_longest_lag_mm
-            .map_or(most as f64 * spacing, |mm| mm.mm_to_m()),
+            .map_or(most as f64 * spacing, super::super::units::Units::mm_to_m),
         per_decade: parameters.lags_per_decade,
     };
     let fits: Vec<_> = correlations

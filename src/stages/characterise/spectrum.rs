@@ -203,7 +203,7 @@ fn spectrum_row(scan: &str, route: &str, bin: &SpectrumBin) -> SpectrumRow {
         wavenumber_rad_mm: bin.wavenumber.per_m_to_per_mm(),
         density_mm3: bin.density.m3_to_mm3(),
         standard_error_mm3: bin.standard_error.m3_to_mm3(),
-        geometric_density_mm3: bin.geometric_density.map(|density| density.m3_to_mm3()),
+        geometric_density_mm3: bin.geometric_density.map(crate::units::Units::m3_to_mm3),
         geometric_bias: bin.geometric_bias,
         frequencies: bin.count as u64,
         route: route.to_owned(),
@@ -232,8 +232,9 @@ pub(super) fn hurst_rows(
 ) -> (Vec<HurstRow>, Vec<String>) {
     let average = self_affine.iter().find(|row| row.scan == AVERAGE);
     let bend = average.map_or(0.0, |row| row.parallel_length_mm);
-    let shortest =
-        parameters.hurst_shortest_wavelength_mm.map_or(shortest_reliable, |mm| mm.mm_to_m());
+    let shortest = parameters
+        .hurst_shortest_wavelength_mm
+        .map_or(shortest_reliable, crate::units::Units::mm_to_m);
     let longest = parameters.hurst_longest_wavelength_mm.unwrap_or(bend).mm_to_m();
     let per_decade = parameters.spectrum_bins_per_decade;
     let of_spectrum = |name: &str, spectra: &[PowerSpectrum]| {

@@ -53,7 +53,7 @@ impl Default for ProfileDepth {
             most_drop_outs: usual.most_drop_outs,
             spike_slope: usual.spike_slope,
             low_pass_mm: 2.4,
-            high_pass_mm: usual.high_pass.map(|metres| metres.m_to_mm()),
+            high_pass_mm: usual.high_pass.map(crate::units::Units::m_to_mm),
         }
     }
 }
@@ -85,7 +85,7 @@ impl ProfileDepth {
             most_drop_outs: self.most_drop_outs,
             spike_slope: self.spike_slope,
             low_pass: self.low_pass_mm.mm_to_m(),
-            high_pass: self.high_pass_mm.map(|mm| mm.mm_to_m()),
+            high_pass: self.high_pass_mm.map(crate::units::Units::mm_to_m),
         }
     }
 }
@@ -278,7 +278,7 @@ fn profile_row(parameters: &Characterise, window: &LineScan) -> Result<ProfileRo
         rt_mm: rt.m_to_mm(),
         rsk,
         rku,
-        rsm_mm: rsm.map(|metres| metres.m_to_mm()),
+        rsm_mm: rsm.map(crate::units::Units::m_to_mm),
         rdq,
     })
 }
@@ -341,7 +341,10 @@ pub(super) fn depth_rows(
             scan: window.name.clone(),
             start_mm: segment.start.m_to_mm(),
             interpolated_share: segment.interpolated,
-            depth_mm: segment.depth.filter(|depth| depth.is_finite()).map(|depth| depth.m_to_mm()),
+            depth_mm: segment
+                .depth
+                .filter(|depth| depth.is_finite())
+                .map(crate::units::Units::m_to_mm),
         };
         Ok(depths.into_iter().map(row).collect())
     };

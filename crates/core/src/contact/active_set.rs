@@ -344,7 +344,7 @@ fn from_the_edge(run: &[u32], count: usize, before: bool, after: bool) -> Vec<u3
             let right = (n - (count - left)).max(left);
             [&run[..left], &run[right..]].concat()
         }
-        (false, false) => run[(n - count) / 2..(n + count) / 2].to_vec(),
+        (false, false) => run[(n - count) / 2..usize::midpoint(n, count)].to_vec(),
     }
 }
 

@@ -172,7 +172,7 @@ fn shortest_waves(samples: &[Height]) -> f64 {
         samples.iter().map(|sample| Complex64::new(sample.slope, 0.0)).collect();
     FftPlanner::new().plan_fft_forward(slopes.len()).process(&mut slopes);
     let powers: Vec<f64> =
-        slopes[..=samples.len() / 2].iter().map(|slope| slope.norm_sqr()).collect();
+        slopes[..=samples.len() / 2].iter().map(nalgebra::Complex::norm_sqr).collect();
     let total: f64 = powers.iter().sum();
     let mut sum = 0.0;
     let shortest = powers.iter().position(|power| {

@@ -216,9 +216,9 @@ impl LocalLaw {
         for _ in 0..MOST_LINE_STEPS {
             let value = c * pressure + self.indentation(pressure);
             if value > s {
-                upper = pressure
+                upper = pressure;
             } else {
-                lower = pressure
+                lower = pressure;
             }
             let slope = (c + self.compliance(pressure)) * pressure / value;
             let mut next = pressure * ((s / value).ln() / slope).exp();

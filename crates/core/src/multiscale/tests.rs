@@ -396,7 +396,7 @@ proptest! {
 fn a_law_ten_thousand_times_deeper_than_the_profile_is_solved() {
     let rubber = Rubber::table_2_1();
     let heights: Vec<f64> =
-        (0..2048).map(|i| 1.09e-7 * (TAU * 17.0 * i as f64 / 2048.0).sin()).collect();
+        (0..2048).map(|i| 1.09e-7 * (TAU * 17.0 * f64::from(i) / 2048.0).sin()).collect();
     let pressures: Vec<f64> = (0..20).map(|i| 1e7 * 0.2_f64.powi(19 - i)).collect();
     for exponent in [0.4, 0.9, 1.4, 1.9, 2.4] {
         for depth in [1e-5, 1e-4, 1e-3] {

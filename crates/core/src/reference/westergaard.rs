@@ -78,9 +78,9 @@ mod tests {
             let n = 2000;
             let mean: f64 = (0..n)
                 .map(|i| {
-                    let s = (i as f64 + 0.5) / n as f64 * 0.5 * PI;
+                    let s = (f64::from(i) + 0.5) / f64::from(n) * 0.5 * PI;
                     let distance = half_width * s.sin();
-                    CONTACT.pressure(p, distance) * s.cos() * half_width * 0.5 * PI / n as f64
+                    CONTACT.pressure(p, distance) * s.cos() * half_width * 0.5 * PI / f64::from(n)
                 })
                 .sum::<f64>()
                 * 2.0

@@ -61,9 +61,8 @@ impl MeasuredModuli {
         if !(0.0..=0.5).contains(&poisson_ratio) {
             return Err(RubberError::PoissonRatio { rubber: rubber(), value: poisson_ratio });
         }
-        let (first, last) = match points {
-            [first, .., last] => (first, last),
-            _ => return Err(RubberError::TooFewPoints { rubber: rubber(), points: points.len() }),
+        let [first, .., last] = points else {
+            return Err(RubberError::TooFewPoints { rubber: rubber(), points: points.len() });
         };
         for (index, point) in points.iter().enumerate() {
             if let Some((quantity, value)) = first_not_positive(point) {

@@ -64,11 +64,11 @@ fn weights(spacing: f64, cutoff: f64, pi_alpha_squared: f64) -> Vec<f64> {
 }
 
 /// Points in reach of point `i`: index, distance in spacings and weight.
-fn in_reach<'a>(
+fn in_reach(
     i: usize,
     count: usize,
-    weights: &'a [f64],
-) -> impl Iterator<Item = (usize, f64, f64)> + 'a {
+    weights: &[f64],
+) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
     let reach = weights.len() - 1;
     (i.saturating_sub(reach)..(i + reach + 1).min(count))
         .map(move |j| (j, j as f64 - i as f64, weights[j.abs_diff(i)]))

@@ -37,7 +37,14 @@ pub enum GridError {
         "{points} points {spacing_mm} mm apart on a track of {length_mm} mm leave nine tenths of it empty; \
          check the unit of the positions, or split the file into its tracks"
     )]
-    Sparse { points: usize, spacing_mm: f64, length_mm: f64 },
+    Sparse {
+        /// Points of the scan.
+        points: usize,
+        /// Their median distance in mm.
+        spacing_mm: f64,
+        /// Length of the track in mm.
+        length_mm: f64,
+    },
 }
 
 /// Puts each point of a scan into the nearest cell of the equidistant grid that fits its positions

@@ -15,7 +15,9 @@ pub(super) enum Wanted {
 impl Wanted {
     /// The quantities without which there is no table, each with its alternatives.
     fn needed(self) -> Vec<[Quantity; 2]> {
-        use Quantity::*;
+        use Quantity::{
+            Frequency, Log10Shift, Loss, LossFactor, ShiftFactor, Storage, Temperature,
+        };
         match self {
             Self::Sweeps => vec![[Frequency, Frequency], [Storage, Storage], [Loss, LossFactor]],
             Self::Factors => vec![[Temperature, Temperature], [Log10Shift, ShiftFactor]],

@@ -164,7 +164,9 @@ fn normal(name: &str) -> String {
 }
 
 fn quantity(name: &str) -> Option<(Quantity, Option<char>, u8)> {
-    use Quantity::*;
+    use Quantity::{
+        Frequency, Log10Shift, Loss, LossFactor, ShiftFactor, Storage, Strain, Temperature,
+    };
     let name = name.replace(" '", "'").replace("( ", "(");
     let symbol = match name.as_str() {
         name if name.starts_with("e'") || name.starts_with("e ") => Some('E'),

@@ -66,7 +66,7 @@ impl TextShape {
                 line(unit_text("x_unit", self.columns[x].unit));
             }
             None => {
-                line("# x_spacing_um = ?            # the file does not say it by column".into())
+                line("# x_spacing_um = ?            # the file does not say it by column".into());
             }
         }
         if let Some(y) = self.proposed_y() {
@@ -137,6 +137,7 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
+/// Name of a unit in a description of a text file.
 pub fn unit_name(unit: LengthUnit) -> &'static str {
     match unit {
         LengthUnit::Nm => "nm",

@@ -152,7 +152,7 @@ fn heights_that_repeat_for_other_reasons_are_no_marks() {
     none((0..900).map(|i| wave(i).clamp(-0.5, 0.5)).collect());
     // A plate of one height, once and twice.
     none((0..900).map(|i| if (100..200).contains(&i) { 0.0 } else { wave(i) }).collect());
-    none((0..900).map(|i| if !(50..=800).contains(&i) { 0.0 } else { wave(i) }).collect());
+    none((0..900).map(|i| if (50..=800).contains(&i) { wave(i) } else { 0.0 }).collect());
     // Steps of an instrument: all heights repeat, those at the crests more often.
     none((0..9000).map(|i| (wave(i) * 50.0).round() / 50.0).collect());
     // Five points are no pattern, and all the same height is another fault.

@@ -78,7 +78,7 @@ fn in_a_short_contact_the_mean_is_glassy_and_the_rest_relaxes() {
 fn homogeneous_deformation_is_in_equilibrium() {
     let grading = Grading { first: 0.8, growth: 1.3 };
     for (law, coarsening) in [(Rheology::NeoHookean, true), (Rheology::Linear, false)] {
-        let options = BlockOptions { coarsening, grading, ..BlockOptions::new(128) };
+        let options = BlockOptions { grading, coarsening, ..BlockOptions::new(128) };
         let mut block = block(&Rubber::table_2_1(), law, &options, 0.01);
         let grid = block.grid.clone();
         // A large shear and compression of the rows: u = (6 Z, -0.1 Z).
@@ -105,7 +105,7 @@ fn the_tangent_is_the_derivative_of_the_forces() {
         // The last one is coarsened; speeds at which all branches remember, some, and none.
         for (columns, speed) in [(10, 1e-6), (10, 0.01), (10, 10.0), (128, 0.01)] {
             let coarsening = columns == 128;
-            let options = BlockOptions { coarsening, grading, ..BlockOptions::new(columns) };
+            let options = BlockOptions { grading, coarsening, ..BlockOptions::new(columns) };
             let mut block = block(&Rubber::table_2_1(), law, &options, speed);
             let mut generator = Pcg64::seed_from_u64(3);
             let scale = PERIOD / columns as f64;

@@ -180,7 +180,7 @@ pub(super) fn joined(sweeps: Vec<Sweep>, options: &FitOptions) -> Result<Chain, 
     let group = match wanted {
         Some(wanted) => groups().find(|group| group.contains(&wanted)),
         // Of equally long ones the coldest.
-        None => groups().rev().max_by_key(|group| group.len()),
+        None => groups().rev().max_by_key(std::iter::ExactSizeIterator::len),
     };
     let group = group.ok_or(FitError::Empty)?;
     if group.len() == 1 && sweeps.len() > 1 {

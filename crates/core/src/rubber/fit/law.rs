@@ -143,7 +143,7 @@ fn wlf(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
     let problem = Wlf { shifts, reference_c, lowest_difference };
     // The constants that Williams, Landel & Ferry found to suit many polymers.
     let start = DVector::from_vec(vec![8.86_f64.ln(), 101.6_f64.ln()]);
-    let minimum = minimise(&problem, start).filter(|minimum| minimum.converged())?;
+    let minimum = minimise(&problem, start).filter(super::least_squares::Minimum::converged)?;
     let coefficients = problem.coefficients(&minimum.parameters);
     let [c1, c2_k] = coefficients;
     if !(c2_k > 0.0 && c2_k < LARGEST_C2_K) {

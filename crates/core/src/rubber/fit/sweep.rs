@@ -230,8 +230,8 @@ pub(super) fn checked(sweeps: &[Sweep]) -> Result<Vec<Sweep>, FitError> {
         let frequency = |point: &SweepPoint| point.angular_frequency;
         sweep.points.sort_by(|a, b| frequency(a).total_cmp(&frequency(b)));
         let twice = sweep.points.windows(2).find(|pair| frequency(&pair[0]) == frequency(&pair[1]));
-        if let Some(pair) = twice {
-            let frequency_hz = frequency(&pair[0]) / std::f64::consts::TAU;
+        if let Some([point, ..]) = twice {
+            let frequency_hz = frequency(point) / std::f64::consts::TAU;
             return Err(FitError::Duplicate { frequency_hz });
         }
     }

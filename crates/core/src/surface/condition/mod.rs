@@ -171,24 +171,62 @@ pub struct WindowReport {
 pub enum ConditioningError {
     /// A value of the recipe is out of its range.
     #[error("{key} is {value}; {demand}")]
-    Parameter { key: &'static str, value: f64, demand: &'static str },
+    Parameter {
+        /// The parameter.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        demand: &'static str,
+    },
     /// Points at the position of the one before, where such scans are refused.
     #[error(
         "scan {scan}: {count} points are at the position of the point before, the first at {position_mm} mm"
     )]
-    Repeated { scan: String, count: usize, position_mm: f64 },
+    Repeated {
+        /// Name of the scan.
+        scan: String,
+        /// How many points.
+        count: usize,
+        /// Position of the first in mm.
+        position_mm: f64,
+    },
     /// The positions make no grid.
     #[error("scan {scan}: {source}")]
-    Grid { scan: String, source: GridError },
+    Grid {
+        /// Name of the scan.
+        scan: String,
+        /// Why.
+        source: GridError,
+    },
     /// The scan is shorter than one window.
     #[error("scan {scan}: {length_mm} mm long, shorter than one window of {window_mm} mm")]
-    TooShort { scan: String, length_mm: f64, window_mm: f64 },
+    TooShort {
+        /// Name of the scan.
+        scan: String,
+        /// Length of the track in mm.
+        length_mm: f64,
+        /// Length of a window in mm.
+        window_mm: f64,
+    },
     /// Too few heights are left for the form of the whole scan.
     #[error("scan {scan}: {source}")]
-    Form { scan: String, source: FormError },
+    Form {
+        /// Name of the scan.
+        scan: String,
+        /// Why.
+        source: FormError,
+    },
     /// No window was kept.
     #[error("scan {scan}: none of {windows} windows is left; the first: {reason}")]
-    NothingLeft { scan: String, windows: usize, reason: String },
+    NothingLeft {
+        /// Name of the scan.
+        scan: String,
+        /// Number of windows.
+        windows: usize,
+        /// Why the first was rejected.
+        reason: String,
+    },
 }
 
 impl HasKind for ConditioningError {

@@ -163,7 +163,7 @@ pub(super) fn check_equal_spacing(
 /// ascending.
 pub fn log_spaced_lags(maximum: usize, per_decade: usize) -> Vec<usize> {
     let mut lags: Vec<usize> = (0..)
-        .map(|j| 10_f64.powf(j as f64 / per_decade.max(1) as f64).round() as usize)
+        .map(|j| 10_f64.powf(f64::from(j) / per_decade.max(1) as f64).round() as usize)
         .take_while(|&lag| lag <= maximum)
         .collect();
     lags.dedup();

@@ -124,7 +124,11 @@ pub fn fit_self_affine(
 ) -> Result<SelfAffineFit, SelfAffineError> {
     check_equal_spacing(scans)?;
     let first = scans.first().ok_or(CorrelationError::NoScans)?;
-    let longest = scans.iter().map(|scan| scan.maximum_lag()).min().unwrap_or(0);
+    let longest = scans
+        .iter()
+        .map(super::correlation::HeightDifferenceCorrelation::maximum_lag)
+        .min()
+        .unwrap_or(0);
     let range = range.unwrap_or(LagRange {
         shortest: first.spacing,
         longest: longest as f64 * first.spacing,

@@ -38,7 +38,7 @@ fn oracle_squares(correlation: &HeightDifferenceCorrelation) -> f64 {
     let samples = correlation.sample_log_spaced(20);
     let x: Vec<f64> = samples.iter().map(|sample| sample.lag.log10()).collect();
     let y: Vec<f64> = samples.iter().map(|sample| sample.value.log10()).collect();
-    let grid = (0..=30_000).map(|i| x[2] + (x[x.len() - 1] - x[2]) * i as f64 / 30_000.0);
+    let grid = (0..=30_000).map(|i| x[2] + (x[x.len() - 1] - x[2]) * f64::from(i) / 30_000.0);
     grid.map(|c| Hinge::at(c, &x, &y).squares).fold(f64::INFINITY, f64::min)
 }
 

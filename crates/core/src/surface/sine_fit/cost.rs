@@ -120,7 +120,7 @@ struct UntilStationary {
 }
 
 impl Solver<LogarithmicCost, AmplitudeState> for UntilStationary {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "trust region until the gradient is small"
     }
 

@@ -91,7 +91,7 @@ fn twenty_random_starts_lead_to_the_same_minimum() {
             for (a, b) in fit.scales.iter().zip(&reference.scales) {
                 // Gradient 1e-11 times a condition of some 100, squared.
                 let difference = (a.scale.amplitude - b.scale.amplitude).abs();
-                assert!(difference < 1e-6 * 5e-4, "{:?} {:?}", a, b);
+                assert!(difference < 1e-6 * 5e-4, "{a:?} {b:?}");
             }
         }
         println!("seed {seed}: at most {most} iterations, residual {}", reference.rms_residual);
@@ -120,7 +120,7 @@ fn oracle_cost(samples: &[CorrelationSample], wavelengths: &[f64]) -> f64 {
                 let (a, b) = (high - 0.618 * (high - low), low + 0.618 * (high - low));
                 if at(a) < at(b) { high = b } else { low = a }
             }
-            amplitudes[i] = (low + high) / 2.0;
+            amplitudes[i] = f64::midpoint(low, high);
         }
     }
     cost(&amplitudes)

@@ -119,7 +119,7 @@ impl PowerLaw {
     /// Integral of `-C1D'(k) / sqrt(k^2 - q^2)` over the piece, for `q` not above it.
     fn integral(self, q: f64) -> f64 {
         let (start, end) = ((self.from / q).max(1.0).acosh(), (self.to / q).acosh());
-        let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
+        let (middle, half) = (f64::midpoint(start, end), (end - start) / 2.0);
         let term =
             |&(node, weight): &(f64, f64)| weight * self.fall(q * (middle + half * node).cosh());
         half * GAUSS.iter().map(term).sum::<f64>()
@@ -132,7 +132,7 @@ impl PowerLaw {
         if n <= 0.0 {
             return 0.0;
         }
-        let (a, x) = ((n + 1.0) / 2.0, (q / self.from).powi(2).min(1.0));
+        let (a, x) = (f64::midpoint(n, 1.0), (q / self.from).powi(2).min(1.0));
         let scale = self.fall(self.from) * (self.from / q).powf(n + 1.0);
         scale * beta(a, 0.5) * beta_reg(a, 0.5, x) / 2.0
     }

@@ -91,7 +91,7 @@ fn both_routes_see_the_flat_spectrum_of_white_noise() {
     }
     let average = PowerSpectrum::average(&spectra).unwrap();
     assert_eq!(average.routes.len(), 2);
-    let expected = (spectra[0].density[77] + spectra[1].density[77]) / 2.0;
+    let expected = f64::midpoint(spectra[0].density[77], spectra[1].density[77]);
     assert_eq!(average.density[77], expected);
 }
 

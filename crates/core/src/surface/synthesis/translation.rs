@@ -63,7 +63,7 @@ mod tests {
     fn expectation(f: impl Fn(f64) -> f64) -> f64 {
         let step = 0.1;
         let density = |y: f64| (-0.5 * y * y).exp() / (2.0 * PI).sqrt();
-        (-140..=140).map(|i| i as f64 * step).map(|y| f(y) * density(y) * step).sum()
+        (-140..=140).map(|i| f64::from(i) * step).map(|y| f(y) * density(y) * step).sum()
     }
 
     #[test]

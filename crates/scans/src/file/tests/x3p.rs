@@ -6,8 +6,8 @@ use super::*;
 fn x3p_data_of_every_type_and_mask_are_read() {
     // Raw 1, 2, 3, 4, of which the mask takes the second.
     let cases: [(&str, Vec<u8>); 4] = [
-        ("I", (1..=4_i16).flat_map(|v| v.to_le_bytes()).collect()),
-        ("L", (1..=4_i32).flat_map(|v| v.to_le_bytes()).collect()),
+        ("I", (1..=4_i16).flat_map(i16::to_le_bytes).collect()),
+        ("L", (1..=4_i32).flat_map(i32::to_le_bytes).collect()),
         ("F", (1..=4_i16).flat_map(|v| f32::from(v).to_le_bytes()).collect()),
         ("D", (1..=4_i16).flat_map(|v| f64::from(v).to_le_bytes()).collect()),
     ];

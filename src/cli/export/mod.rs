@@ -296,7 +296,7 @@ impl Export {
 /// All tables of a run, as `stage/table`.
 fn all_tables(view: &RunView) -> Vec<String> {
     let mut tables = Vec::new();
-    for stage in Stage::ALL.into_iter() {
+    for stage in Stage::ALL {
         // A damaged manifest hides the tables of its own stage alone.
         let manifest = view.stage_manifest(stage.name()).ok().flatten();
         let outputs = manifest.into_iter().flat_map(|manifest| manifest.outputs);
