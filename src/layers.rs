@@ -144,6 +144,22 @@ fn only_the_plot_module_draws() {
     assert_eq!(others, Vec::<PathBuf>::new());
 }
 
+/// What another operating system needs is in one module (`crates/files/src/os.rs`).
+#[test]
+fn the_operating_system_is_asked_in_one_place() {
+    let mut files = files_of(&project().join("src"), "cli");
+    files.extend(PROGRAM.iter().flat_map(|module| files_of(&project().join("src"), module)));
+    let folder = |name: &str| std::fs::read_dir(project().join(name)).unwrap();
+    files.extend(folder("crates/files/src").map(|entry| entry.unwrap().path()));
+    let asks = |file: &PathBuf| {
+        let text = std::fs::read_to_string(file).unwrap();
+        let in_code = code(&text).any(|line| line.contains("std::os::"));
+        in_code && !file.components().any(|part| part.as_os_str() == "tests")
+    };
+    files.retain(asks);
+    assert_eq!(files, [project().join("crates/files/src/os.rs")]);
+}
+
 /// Lines of code, without comments and what follows `#[cfg(test)]`.
 fn code(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines().take_while(|line| !line.starts_with("#[cfg(test)]"));

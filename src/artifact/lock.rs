@@ -2,11 +2,11 @@
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read};
-use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::time::Duration;
 
 use super::ArtifactError;
+use crate::files::os;
 
 const FILE: &str = ".lock";
 const HEAD: &str = "locked by asperity, process ";
@@ -39,7 +39,7 @@ pub(super) fn take(folder: &Path) -> Result<File, ArtifactError> {
     if new || !empty {
         // Of one length and in one piece, so that a kill leaves a text that is known again.
         let text = format!("{HEAD}{:>10}\n", std::process::id());
-        lock.write_all_at(text.as_bytes(), 0).map_err(ArtifactError::io("write", &path))?;
+        os::write_at_start(&lock, text.as_bytes()).map_err(ArtifactError::io("write", &path))?;
     }
     Ok(lock)
 }

@@ -11,15 +11,15 @@
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, Permissions};
+use std::fs;
 use std::io;
-use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::{Component, Path, PathBuf};
 
 use serde::Deserialize;
 use tempfile::NamedTempFile;
 
 use super::{ArtifactError, Manifest, SOLVES_FOLDER};
+use crate::files::os;
 
 /// Folder of the surfaces of all specimens and seeds in that of a sweep.
 pub const SURFACES_FOLDER: &str = "surfaces";
@@ -73,7 +73,7 @@ pub(super) fn place(run: &Path, stage: &str) -> Result<Place, ArtifactError> {
 
 /// What tells a file, folder or link from another of the same name.
 fn identity(path: &Path) -> Option<(u64, u64)> {
-    fs::symlink_metadata(path).ok().map(|metadata| (metadata.dev(), metadata.ino()))
+    fs::symlink_metadata(path).ok().map(|metadata| os::identity(&metadata))
 }
 
 fn look(path: &Path, stage: &str) -> Result<Place, ArtifactError> {
@@ -204,7 +204,7 @@ fn is_listed(entry: &Path, listed: &BTreeSet<OsString>) -> bool {
 pub(super) fn new_folder(run: &Path, stage: &str) -> Result<PathBuf, ArtifactError> {
     let folder = empty_folder(run, &format!("{PREFIX}new-{stage}-"))?;
     // File systems without links lack the mark: there an empty list, left by a kill, is not known as asperity's.
-    let _ = symlink(MARK_TEXT, folder.join(MARK));
+    let _ = os::link(MARK_TEXT, folder.join(MARK));
     let journal = folder.join(JOURNAL);
     fs::write(&journal, format!("{JOURNAL}\n")).map_err(|error| {
         // On a full disk: nobody else has put anything there yet. What cannot be removed is left empty.
@@ -225,7 +225,7 @@ fn empty_folder(run: &Path, prefix: &str) -> Result<PathBuf, ArtifactError> {
     let folder = tempfile::Builder::new()
         .prefix(prefix)
         // The usual permissions less the umask: results are for colleagues too.
-        .permissions(Permissions::from_mode(0o777))
+        .permissions(os::shared_folder())
         .tempdir_in(run)
         .map_err(ArtifactError::io("create a folder in", run))?;
     Ok(folder.keep())
@@ -390,10 +390,7 @@ pub fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    tempfile::Builder::new()
-        .prefix(&prefix)
-        .permissions(Permissions::from_mode(0o666))
-        .tempfile_in(folder)
+    tempfile::Builder::new().prefix(&prefix).permissions(os::shared_file()).tempfile_in(folder)
 }
 
 /// Entries of a folder, sorted.

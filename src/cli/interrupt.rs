@@ -1,10 +1,10 @@
 //! Ctrl-C, and the signal by which a scheduler ends a job, for commands that have something to clean up; the
 //! others simply end.
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
 use super::CliError;
+use asperity::files::os::signals_to_end;
 use asperity::numerics;
 
 /// Whether the user has pressed Ctrl-C, or SIGTERM has come, since the installation.
@@ -19,7 +19,7 @@ impl Interrupt {
     /// [`CliError::Failure`] if the operating system refuses.
     pub(super) fn install() -> Result<Self, CliError> {
         let interrupt = numerics::Interrupt::default();
-        for signal in [SIGINT, SIGTERM, SIGHUP] {
+        for signal in signals_to_end() {
             // In this order: the flag is looked at before it is set.
             let code = i32::from(CliError::Interrupted.exit_code());
             flag::register_conditional_shutdown(signal, code, interrupt.flag())

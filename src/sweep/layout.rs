@@ -131,7 +131,7 @@ impl Layout {
         let folder = link.parent().unwrap_or(&self.out);
         self.check_links(folder)?;
         std::fs::create_dir_all(folder).map_err(failed)?;
-        match std::os::unix::fs::symlink(relative, link) {
+        match crate::files::os::link(relative, link) {
             Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(failed(error)),
             _ => Ok(()),
         }

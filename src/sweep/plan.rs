@@ -261,7 +261,7 @@ fn write(layout: &Layout, plan: &SweepPlan, lists: &[ShardTasks]) -> Result<Path
     }
     let folder = tempfile::Builder::new()
         .prefix(".asperity-")
-        .permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777))
+        .permissions(crate::files::os::shared_folder())
         .tempdir_in(&plans)
         .map_err(failed(&plans))?;
     for list in lists {

@@ -2,15 +2,17 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`os`] | what is different on another operating system |
 //! | [`name`] | names and paths as text without loss |
 //! | `toml_error` | mistakes in TOML with line and nearest key |
 
 pub mod name;
+pub mod os;
 mod toml_error;
 
 pub use toml_error::{TomlError, nearest};
 
-use std::fs::{File, Metadata};
+use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -38,7 +40,7 @@ pub fn admit(path: &Path, limit: u64) -> io::Result<()> {
     if !metadata.is_file() {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            format!("it is {}, not a file; write its content to a file first", kind_of(&metadata)),
+            format!("it is {}, not a file; write its content to a file first", os::kind(&metadata)),
         ));
     }
     admit_size(metadata.len(), limit)
@@ -93,18 +95,6 @@ fn admit_size(bytes: u64, limit: u64) -> io::Result<()> {
             limit >> 20
         ),
     ))
-}
-
-fn kind_of(metadata: &Metadata) -> &'static str {
-    use std::os::unix::fs::FileTypeExt;
-    let kind = metadata.file_type();
-    if kind.is_fifo() {
-        "a pipe"
-    } else if kind.is_socket() {
-        "a socket"
-    } else {
-        "a device"
-    }
 }
 
 #[cfg(test)]

@@ -4,12 +4,11 @@
 //! A path that is UTF-8 is its own text. Any other is `bytes:` and its bytes percent-encoded (RFC 3986), as in
 //! `bytes:stra%DFe/scan.txt`, which reads back to the same bytes.
 
+use crate::os;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, percent_encode};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::io;
-use std::os::unix::ffi::OsStringExt;
-use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
 const PREFIX: &str = "bytes:";
@@ -32,9 +31,7 @@ pub fn path_text(path: &Path) -> String {
 fn path_of(text: String) -> PathBuf {
     match text.strip_prefix(PREFIX) {
         None => PathBuf::from(text),
-        Some(escaped) => {
-            PathBuf::from(OsString::from_vec(percent_decode_str(escaped).collect::<Vec<u8>>()))
-        }
+        Some(escaped) => PathBuf::from(os::name_of_bytes(percent_decode_str(escaped).collect())),
     }
 }
 
@@ -58,11 +55,11 @@ impl Utf8Path {
         // A file that is to be made has a name of ours: then its folder is the odd part of the path.
         let path = match (target.parent(), target.file_name().and_then(OsStr::to_str)) {
             (Some(folder), Some(name)) => {
-                symlink(folder, &place)?;
+                os::link(folder, &place)?;
                 place.join(name)
             }
             _ => {
-                symlink(&target, &place)?;
+                os::link(&target, &place)?;
                 place
             }
         };
@@ -157,7 +154,7 @@ mod tests {
 
     #[test]
     fn every_path_comes_back_from_json_and_toml() {
-        let odd = |bytes: &[u8]| PathBuf::from(OsString::from_vec(bytes.to_vec()));
+        let odd = |bytes: &[u8]| PathBuf::from(os::name_of_bytes(bytes.to_vec()));
         let many = vec![
             PathBuf::from("plain/ö %41.txt"),
             odd(b"stra\xdfe/%DF \xc3\xb6.txt"),
