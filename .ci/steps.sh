@@ -114,6 +114,15 @@ main_job_in_short() {
     cargo run --release --locked -- run "$scratch/asphalt.toml" --out "$runs/asphalt"
 }
 
+# What a user downloads, and waits for at every figure.
+size_and_figure() {
+    cp target/release/asperity "$scratch/asperity"
+    strip "$scratch/asperity"
+    printf 'stripped binary: %d bytes\n' "$(stat -c %s "$scratch/asperity")"
+    (($(stat -c %s "$scratch/asperity") < 40000000))
+    "$python" scripts/check_figure_time.py --program target/release/asperity "$runs/smoke"
+}
+
 # Pages whose blocks are run as they stand there.
 tutorial() {
     "$python" scripts/run_page.py docs/first_steps.md --programs target/release --copy data
