@@ -6,6 +6,7 @@ use crate::contact::curve::CurveError;
 use crate::surface::ConditioningError;
 use crate::surface::self_affine::SelfAffineError;
 use crate::surface::texture::DepthError;
+use crate::units::Units;
 
 /// After an error of [`crate::surface::condition()`].
 pub(super) fn of_conditioning(error: &ConditioningError) -> &'static str {
@@ -56,7 +57,7 @@ pub(super) fn of_depth(error: &DepthError) -> String {
             "; raise characterise.profile_depth.segment_mm, 100 mm in ISO 13473-1".into()
         }
         DepthError::Short { segment, .. } => {
-            format!(" (characterise.profile_depth.segment_mm = {})", segment * 1e3)
+            format!(" (characterise.profile_depth.segment_mm = {})", segment.m_to_mm())
         }
         DepthError::NoHeights => String::new(),
     }

@@ -170,7 +170,7 @@ fn clumsy_files_are_answered_clearly() {
         (&changed("Zscale = 1", "Zscale = 0"), &["line 9", "Zscale is `0`", "positive"]),
         (&changed("Zscale = 1", "Zscale = -1"), &["line 9", "Zscale is `-1`", "positive"]),
         (missing.as_bytes(), &["all 2 heights are missing"]),
-        (b"PK\x05\x06\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", &["is none of"]),
+        (b"PK\x05\x06\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", &["is not an Arrow table"]),
         (b"no\nnumbers\n", &["without lines of numbers"]),
     ];
     for (bytes, parts) in errors {

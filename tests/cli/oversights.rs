@@ -36,7 +36,6 @@ fn a_folder_that_is_missing_is_told_of_before_anything_is_computed() {
     for command in [
         "solve bem --wave 1:0.05 --speed 10 --pressure 0.1 --fields nowhere/f.csv",
         "solve fem --wave 0.0625:0.01 --speed 10 --pressure 1 --fields nowhere/f.csv",
-        "bench --to nowhere/page.md",
         "convert scans/track_0.txt --to nowhere/scan.csv --separator semicolon --comment # --x-column x_mm --x-unit mm \
          --z-column z_um --z-unit um",
     ] {

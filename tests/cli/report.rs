@@ -132,7 +132,7 @@ fn a_part_of_a_run_has_a_report_that_says_what_is_missing() {
     assert!(page.contains("id=\"figure-correlation\"") && !page.contains("id=\"figure-friction\""));
     assert!(page.contains("No rubber was used in this run"));
     let friction = outcome(&campaign, "plot friction out").error(2);
-    assert!(friction.contains("out has no figure `friction`: that takes"), "{friction}");
+    assert!(friction.contains("out has no figure `friction`: it needs"), "{friction}");
 }
 
 #[test]

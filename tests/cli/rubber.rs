@@ -158,7 +158,7 @@ fn bad_sweeps_are_explained() {
         ("frequency_hz,storage_mpa,loss_mpa\n0,2,1\n10,2,1\n", "line 2: frequency_hz is 0"),
         (
             "frequency_hz,storage_mpa,loss_mpa\n1,2,1\n\n1.0,2,1\n",
-            "line 4: the frequency 1.0 stands",
+            "line 4: the frequency 1.0 is given",
         ),
         ("frequency_hz,storage_mpa,loss_mpa\nHz,MPa,MPa\n", "there are no rows"),
         ("frequency_hz,storage_mpa,loss_mpa\nHz,kPa,MPa\n", "is in MPa and the row below says kPa"),

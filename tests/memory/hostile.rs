@@ -155,7 +155,7 @@ fn compressed_surfaces() {
     refused(
         "a stream of another length",
         &digital_surf(700, 700, &small, 980_000),
-        &["behind its length"],
+        &["after its length"],
     );
 }
 

@@ -60,6 +60,8 @@ fn cases_are_chosen_by_name() {
     assert!(unknown.contains("no case sine: choose from half-space-1-wave, half-space-3-waves"));
     let plot = refusal(&words("bench --quick --growth --format svg"));
     assert!(plot.contains("--growth has no plot"));
+    let nowhere = refusal(&words("bench --quick --to nowhere/page.md"));
+    assert!(nowhere.contains("there is no folder nowhere"));
 }
 
 #[test]

@@ -158,7 +158,7 @@ mod tests {
             ("x,z\n0,1\n1,2", Some(1), "x: `x` is not a number; start lines of text with #"),
             ("0,1\n1,\n2,2", Some(2), "z: `` is not a number"),
             ("0 1\n1 NaN\n2 2", Some(2), "`NaN` is not a finite number"),
-            ("0,5;1,5", Some(1), "4 columns, needed are the 2 columns x and z"),
+            ("0,5;1,5", Some(1), "4 columns instead of the 2 columns x and z"),
             ("0\n1\n", Some(1), "1 columns"),
             ("0 1\n0 2\n1 3", Some(2), "x = 0 does not grow from 0"),
             ("2 1\n1 2\n0 3", Some(2), "x = 1 does not grow from 2"),

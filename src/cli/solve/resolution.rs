@@ -1,4 +1,4 @@
-//! What `asperity solve fem` asks of a mesh, and what it says of one that falls short.
+//! What `asperity solve fem` requires of a mesh, and its warnings about a coarse one.
 
 use crate::cli::CliError;
 use crate::cli::output::significant;
@@ -8,23 +8,23 @@ use asperity::units::Units;
 /// Columns on the shortest wave without --columns: friction is then within about half a percent
 /// of the limit for usual areas.
 const DEFAULT_COLUMNS_PER_WAVE: f64 = 64.0;
-/// More columns than this are not chosen for a user: they are minutes and gigabytes.
+/// Largest default number of columns: more take minutes and gigabytes.
 pub(super) const MOST_DEFAULT_COLUMNS: usize = 8192;
-/// From here on a contact takes minutes.
+/// Number of columns from which a contact takes minutes.
 const MANY_COLUMNS: usize = 4096;
 /// Fewer columns on the shortest wave leave contacts of one or two nodes, whose friction is
 /// that of the mesh.
 pub(super) const LEAST_COLUMNS_PER_WAVE: f64 = 8.0;
-/// Below this, friction is off by 10 % and more.
+/// Columns on the shortest wave below which friction is off by 10 % and more.
 const FEW_COLUMNS_PER_WAVE: f64 = 16.0;
 /// Fewer samples cannot tell a wave from a longer one.
 const LEAST_SAMPLES_PER_WAVE: f64 = 3.0;
 /// Relative difference of heat and work from which the user is warned; converged meshes have 1e-3.
 const COARSE: f64 = 0.05;
-/// A difference of friction that does not matter, where friction is next to nothing.
+/// Absolute difference of friction below which there is no warning, for friction close to zero.
 const LEAST_DIFFERENCE: f64 = 1e-4;
 
-/// The usual number of columns for a profile.
+/// The default number of columns for a profile.
 ///
 /// # Errors
 /// [`CliError::Input`] if that is more than can be solved in reasonable time.
@@ -85,8 +85,8 @@ pub(super) fn check(profile: &RigidProfile, columns: usize) -> Result<Vec<String
     Ok(warnings)
 }
 
-/// A warning where friction by the work of the drag and by the heat of the branches are apart, or
-/// the rubber reaches through the profile between the nodes.
+/// A warning if friction by the work of the drag and by the heat of the branches differ, or if the
+/// profile reaches into the rubber between the nodes.
 pub(super) fn coarse(friction: f64, heat: f64, mean_separation: f64) -> Option<String> {
     let difference = (friction - heat).abs();
     if difference > COARSE * friction.abs().max(heat.abs()) && difference > LEAST_DIFFERENCE {

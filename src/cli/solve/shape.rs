@@ -56,15 +56,15 @@ pub(super) struct Shape {
     pub(super) period: f64,
     /// Heights in m at equidistant points.
     pub(super) heights: Vec<f64>,
-    /// The sines that the heights are samples of, if they are.
+    /// The sines that were sampled; none for a profile from a file.
     pub(super) waves: Vec<Wave>,
-    /// What the user should know about it.
+    /// Warnings about the profile.
     pub(super) warning: Option<String>,
 }
 
 impl Shape {
-    /// Heights in m on another number of points: the sines there, or every second, fourth ... point
-    /// of a profile.
+    /// Heights in m on another number of points: sines are sampled there, of a profile every second,
+    /// fourth ... point is taken.
     pub(super) fn heights_on(&self, points: usize) -> Vec<f64> {
         if self.waves.is_empty() {
             resample(&self.heights, points)

@@ -39,15 +39,14 @@ fn smallest_rest(report: &ConditioningReport) -> f64 {
 pub fn fault_figure(report: &ConditioningReport) -> Option<Figure> {
     let overview = report.overview.as_ref()?;
     let kinds: Vec<&str> = overview.marks.iter().map(|marks| marks.fault.as_str()).collect();
+    let mut caption =
+        "The scan as measured, with circles at its faults and ticks at missing points".to_owned();
     let mut panels = vec![whole_scan(report, overview, &kinds)];
-    panels.extend(overview.closeup.as_ref().map(|closeup| largest_step(closeup, &kinds)));
-    Some(Figure {
-        caption:
-            "The scan as measured, with circles at its faults and ticks at missing points, and \
-                  the points around the largest step at a fault."
-                .into(),
-        panels,
-    })
+    if let Some(closeup) = &overview.closeup {
+        caption += ", and the points around the largest step at a fault";
+        panels.push(largest_step(closeup, &kinds));
+    }
+    Some(Figure { caption: caption + ".", panels })
 }
 
 fn whole_scan(report: &ConditioningReport, overview: &FaultOverview, kinds: &[&str]) -> Panel {
