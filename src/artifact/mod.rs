@@ -15,6 +15,25 @@
 //! Tables are Arrow IPC files, arrays HDF5 files; both carry units, a schema name, a version and a
 //! digest of their content, so pyarrow, polars and h5py read them without this crate. No other
 //! module knows either format.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `arrays` | named one-dimensional arrays as HDF5 files |
+//! | `columns` | from a row type to the columns of its table |
+//! | `content` | digest of the content of a table, independent of the bytes of its file |
+//! | `digest` | BLAKE3 digests of bytes, files and JSON values |
+//! | `error` | what can go wrong with a file, and what to do about it |
+//! | `export` | tables for other programs |
+//! | `handle` | handles: where a file of a result is and what it holds, stated once, beside the type of its rows |
+//! | `layout` | checks of the layout of an Arrow IPC file, before the reader trusts it |
+//! | `lock` | the lock of a run folder: a file `.lock` that says which process has it |
+//! | `manifest` | provenance of a result: what went in, what came out, and the key that decides whether a result is still that of the recipe |
+//! | `own` | which files of a run folder asperity wrote: nothing else is removed, renamed or changed |
+//! | `schema` | the committed JSON documents that describe the artifacts |
+//! | `solves` | store of single results, so that a stopped run or sweep continues where it stopped |
+//! | `store` | the output folder of a run: one subfolder per stage with its current result |
+//! | `table` | tables as Arrow IPC files |
+//! | `view` | the results in an output folder, for reading |
 
 mod arrays;
 mod columns;

@@ -2,6 +2,33 @@
 //!
 //! Results go to standard output, everything else to standard error. Exit code 0 is success, 1 a
 //! failed computation or an output that could not be written, 2 bad input, 130 an interrupt.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `convert` | scans from one format to another |
+//! | `error` | errors with their exit codes |
+//! | `export` | friction tables for people and other programs |
+//! | `init` | a folder to start in |
+//! | `inspect` | what is in a file or folder |
+//! | `interrupt` | Ctrl-C, and the signal by which a scheduler ends a job, for commands that have something to clean up; the others simply end |
+//! | `last_run` | the note of the last run: the recipe from which the results of a run folder were computed, so that `export` can tell whether they are up to date |
+//! | `output` | standard output and files |
+//! | `plan` | what a recipe will compute, before it runs |
+//! | `plot` | single figures of a run |
+//! | `progress` | progress bars, on a terminal and for what takes more than a second |
+//! | `recipe_options` | what `run` and `status` have in common: the recipe, the scans, the run folder |
+//! | `report` | everything about a run in one file |
+//! | `rubber` | a rubber file from measured moduli |
+//! | `run` | a recipe from scans to tables |
+//! | `run_folder` | the run folder that a command reads |
+//! | `shell` | completions for shells and manual pages |
+//! | `solve` | a single contact problem |
+//! | `status` | which results are up to date |
+//! | `sweep` | many cases on many machines |
+//! | `synth` | synthetic scans of asphalt |
+//! | `threads` | the threads of a command |
+//! | `values` | parsers of single option values |
+//! | `verify` | whether the files of a run folder are unchanged |
 
 mod convert;
 mod error;

@@ -95,9 +95,9 @@ pub(super) fn write_file(
         }
         Ok(_) => {
             let target = fs::canonicalize(path).map_err(failed)?;
-            write_by_rename(&target, overwrite, write).map_err(failed)
+            write_durably(&target, overwrite, write).map_err(failed)
         }
-        Err(_) => write_by_rename(path, overwrite, write).map_err(failed),
+        Err(_) => write_durably(path, overwrite, write).map_err(failed),
     }
 }
 
@@ -137,7 +137,7 @@ pub(super) fn already_exists(path: &Path) -> CliError {
     CliError::input(format!("{path} exists already: choose another place, or give --force"))
 }
 
-fn write_by_rename(
+fn write_durably(
     path: &Path,
     overwrite: bool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,

@@ -5,6 +5,13 @@
 //! follow from this one. Where an accuracy of the average is asked for it is eight, whose spread tells how
 //! many more are needed. Finite elements are too dear to try; their cost is that of the main job,
 //! scaled ([`micro`]).
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `fem` | what all waves at finite deformation will ask for |
+//! | `micro` | what the microscales will ask of the finite elements |
+//! | `multilevel` | how many realisations the stage multilevel will solve with finite elements, and what they cost |
+//! | `scales` | which model each scale of a surface gets, and why |
 
 mod fem;
 pub mod micro;

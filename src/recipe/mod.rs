@@ -1,4 +1,10 @@
 //! The recipe: a TOML file that says what a run does, with units in its keys.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `error` | what can be wrong with a recipe |
+//! | `hints` | where a mistake stands in a recipe, and what was typed there |
+//! | `sweep` | section `[sweep]`: lists in place of single values, and the cases that they make |
 
 mod error;
 mod hints;

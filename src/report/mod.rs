@@ -1,4 +1,13 @@
 //! Friction tables, figures and the report of a run, for people.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `figures` | the figures of a run, each made of its results alone |
+//! | `html` | the report of a run: one HTML document that needs nothing else |
+//! | `read` | what figures and reports read of a run |
+//! | `sinusoid` | the study of one sine wave as Markdown |
+//! | `spreadsheet` | friction tables as a workbook |
+//! | `tables` | friction tables in the layout of the published ones: contact area in the first column, one column per realisation, their average |
 
 pub mod figures;
 pub mod html;

@@ -1,6 +1,11 @@
 //! The files of a rubber: its TOML, and tables of measured sweeps.
 //!
 //! The rubber itself is that of [`asperity_core::rubber`], under the same names.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `document` | a rubber as the text of its file |
+//! | `file` | rubbers as TOML files |
 
 mod document;
 mod file;

@@ -13,6 +13,19 @@
 //! rubber, one speed, all its pressures. No two shards of a plan write the same file, results move by rename,
 //! and no lock or clock is asked. What depends on results, microscales after the half-space or
 //! realisations that a tolerance takes, is a plan of its own once they are there.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `collect` | from the solves of all shards to the tables of all cases |
+//! | `cost` | what a task is expected to cost, by rules that give the same everywhere: shares must not depend on how busy a machine was |
+//! | `layout` | where the files of a sweep are |
+//! | `plan` | the plan of a sweep: which tasks are missing and which shard solves them |
+//! | `prepare` | the cases of a sweep with their surfaces and rubbers: what is cheap, and is done before anything is dealt |
+//! | `shard` | one shard of a plan, on any machine that sees the folder of the sweep |
+//! | `shares` | tasks dealt to shards by their predicted cost |
+//! | `slurm` | job scripts for Slurm: an array with an element for each shard, and a job that collects after it |
+//! | `table` | the tables of all cases in one, keyed by what the sweep lists |
+//! | `task` | what a shard computes: the tasks of the stages that solve |
 
 mod collect;
 mod cost;

@@ -1,4 +1,9 @@
 //! `asperity export`: friction tables for people and other programs.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `study` | export of the study of one sine wave |
+//! | `sweep` | the tables of all cases of a sweep |
 
 mod study;
 mod sweep;

@@ -1,4 +1,10 @@
 //! `asperity init`: a folder to start in.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `ladder` | the ladder of waves: from the shortest that the spacing of the scans resolves to half their length |
+//! | `look` | what a recipe needs to know of the scans: how they are read, their lengths and spacings |
+//! | `relative` | paths of a recipe, relative to its folder |
 
 mod ladder;
 mod look;

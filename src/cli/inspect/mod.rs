@@ -1,4 +1,15 @@
 //! `asperity inspect`: what is in a file or folder.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `artifact` | tables and arrays |
+//! | `child` | files of arrays are read in a process of their own, since the HDF5 library may crash on a damaged file |
+//! | `folder` | manifests, folders of stages, folders of runs |
+//! | `instrument` | instrument files, which state their own units |
+//! | `provenance` | where a file comes from: the manifest beside it |
+//! | `scan` | text scans, described by options |
+//! | `solve` | stored single solves |
+//! | `text_shape` | text without a description: what it looks like, and a proposal for a description |
 
 mod artifact;
 mod child;

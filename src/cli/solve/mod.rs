@@ -1,4 +1,15 @@
 //! `asperity solve`: a single contact problem.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `bem` | the steady sliding contact on the linear viscoelastic half-space |
+//! | `error_estimate` | the error of a single solve, as it is printed |
+//! | `fem` | sliding contact at finite deformation |
+//! | `fem_output` | what `asperity solve fem` prints and writes |
+//! | `material` | the rubber of a single problem |
+//! | `profile_file` | a periodic profile in a text file of two columns |
+//! | `resolution` | what `asperity solve fem` requires of a mesh, and its warnings about a coarse one |
+//! | `shape` | the profile of a single problem: superposed sines or a file |
 
 mod bem;
 mod error_estimate;

@@ -1,4 +1,12 @@
 //! `asperity sweep`: many cases on many machines.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `collect` | `asperity sweep collect` |
+//! | `plan` | `asperity sweep plan` |
+//! | `shard` | `asperity sweep run` |
+//! | `status` | `asperity sweep status` |
+//! | `submit` | `asperity sweep submit` |
 
 mod collect;
 mod plan;

@@ -1,4 +1,18 @@
 //! The figures of a run, each made of its results alone.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `accuracy` | what accuracy costs, and what the error is made of |
+//! | `contact` | contact area over pressure |
+//! | `correction` | the correction of the half-space by the microscale |
+//! | `fields` | pressure and deformation along a surface |
+//! | `friction` | friction over contact area |
+//! | `roughness` | correlation and spectrum of the scans |
+//! | `rubber` | the master curve of the rubber of a run |
+//! | `rubber_fit` | measured and fitted moduli over frequency, and the shift factors |
+//! | `scans` | what the scans look like |
+//! | `study` | friction and contact area of the study of one sine wave |
+//! | `waves` | the superposed sines |
 
 mod accuracy;
 mod contact;

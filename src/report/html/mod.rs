@@ -1,4 +1,14 @@
 //! The report of a run: one HTML document that needs nothing else.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `contact` | sections on the correction, the fields and the rubber |
+//! | `friction` | sections on friction, its tables and its error |
+//! | `page` | parts that all sections are made of |
+//! | `provenance` | where the results come from and how to compute them again |
+//! | `roughness` | sections on correlation, spectrum and waves |
+//! | `scans` | sections on the scans |
+//! | `study` | the study of one sine wave |
 
 mod contact;
 mod friction;

@@ -1,4 +1,14 @@
 //! bem: sliding contact of the viscoelastic half-space, for every realisation and speed.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `attainable` | whether the realisations that may be drawn can have the accuracy that is asked for, before grids are refined to it |
+//! | `curve` | one curve of friction over contact area: one surface at one speed |
+//! | `ensemble` | the curves of one approximation at one speed, of as many realisations as their average needs |
+//! | `reduction` | waves that matter less than the accuracy that is asked for are left out, and what that changes is bounded |
+//! | `rows` | what the stage writes |
+//! | `task` | one curve as a task of a sweep, which any machine can solve |
+//! | `work` | the curves of all ensembles: those that are missing, solved side by side |
 
 mod attainable;
 mod curve;

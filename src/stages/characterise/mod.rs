@@ -1,5 +1,12 @@
 //! characterise: roughness parameters, height-difference correlation, spectrum, self-affine fit,
 //! parameters of the standards.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `rows` | the tables of the stage |
+//! | `spectrum` | the spectrum and what follows from it: bins, the isotropic spectrum, Hurst exponents, the check against the correlation |
+//! | `standards` | parameters of the standards: profile parameters, mean profile depth, texture levels |
+//! | `warnings` | what a user is told where numbers are left out |
 
 mod rows;
 mod spectrum;

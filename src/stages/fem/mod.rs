@@ -1,5 +1,11 @@
 //! fem: friction over contact area with all waves at finite deformation, for surfaces that are
 //! small enough; what the other models are measured by.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `curve` | one curve of friction over contact area: one surface at one speed, solved along its pressures |
+//! | `rows` | the tables of the stage |
+//! | `task` | one curve as a task, which any machine can solve |
 
 mod curve;
 mod rows;

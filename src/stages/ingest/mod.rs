@@ -1,4 +1,13 @@
 //! ingest: from scan files to windows of equal spacing.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `cleaning` | what was cleaned from the scans, for the people who decide on it |
+//! | `faults` | the table of the faults of the scans |
+//! | `files` | the scan files of a recipe: what is at its paths, with digests |
+//! | `picture` | pictures of the faults of a scan, in SVG |
+//! | `rows` | the tables of the stage |
+//! | `warnings` | what a user is told of the scans |
 
 mod cleaning;
 mod faults;

@@ -1,5 +1,12 @@
 //! micro: friction, area and separation of the steepest waves over their mean pressure, on the
 //! half-space and at finite deformation.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `curve` | one microscale at one speed, sampled as densely as the tolerance needs |
+//! | `monotony` | what every contact does as it is pressed harder: its area grows and its separation falls |
+//! | `rows` | the tables of the stage |
+//! | `task` | one microscale at one speed: what it is pressed by, and its sampling, on any machine |
 
 mod curve;
 mod monotony;

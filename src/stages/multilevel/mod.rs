@@ -5,6 +5,15 @@
 //! variate of unit coefficient Peherstorfer, Willcox & Gunzburger, SIAM Review 60, 2018,
 //! doi:10.1137/16M1082469): the mean of the half-space plus the mean difference of pairs that share
 //! their phases (`estimate`). The numbers of both follow from variances and costs (`shares`).
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `bound` | a bound of the difference between half-space and finite deformation on gentle surfaces, where no finite elements are needed to know that the difference is small |
+//! | `ensemble` | the realisations of one approximation at one speed under both models |
+//! | `estimate` | the two-level estimate of a mean, its confidence interval, and what the interval will be for other numbers of realisations |
+//! | `rows` | what the stage writes |
+//! | `shares` | how many realisations of each model give the wanted interval for the least work |
+//! | `work` | the curves of all ensembles: those that are missing, solved side by side |
 
 mod bound;
 mod ensemble;

@@ -1,4 +1,14 @@
 //! tables: friction over contact area, averaged over the realisations.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `accuracy` | whether the averages have the accuracy that the recipe asks for |
+//! | `model_error` | how far the hybrid is from what it approximates |
+//! | `models` | how far the models of a run are apart |
+//! | `multilevel` | the averages of the stage multilevel as rows of the friction tables |
+//! | `published` | published tables beside the computed ones |
+//! | `rows` | the tables of the stage |
+//! | `theories` | what older theories predict at the areas of the half-space |
 
 mod accuracy;
 mod model_error;
