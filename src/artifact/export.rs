@@ -181,9 +181,9 @@ fn cells(column: &dyn Array) -> Result<CellWriter<'_>, ArtifactError> {
     Ok(Box::new(move |row| if column.is_null(row) { String::new() } else { cell(row) }))
 }
 
-/// The fewest digits that read back to the same bits: `2.0`, `1e-5`.
+/// The fewest digits that read back to the same bits, as JSON has them: `2.0`, `0.00001`, `1e-6`.
 fn float(value: f64) -> String {
-    format!("{value:?}")
+    if value.is_finite() { Value::from(value).to_string() } else { value.to_string() }
 }
 
 /// A name as it may stand in a cell of CSV: a spreadsheet runs what begins like a formula
@@ -211,7 +211,8 @@ mod tests {
         let table =
             ExportTable::new(columns.map(|(name, values)| (name.to_owned(), values))).unwrap();
         let text = String::from_utf8(table.csv().unwrap()).unwrap();
-        let expected = "name,number\n'=cmd|' /C calc'!A0,-1.5\n'@x,2.0\ntread,\na=b,1e-5\n,1e300\n";
+        let expected =
+            "name,number\n'=cmd|' /C calc'!A0,-1.5\n'@x,2.0\ntread,\na=b,0.00001\n,1e300\n";
         assert_eq!(text, expected);
         assert_eq!(table.without(&["name"]).unwrap().names(), ["number"]);
         assert_eq!(table.first_rows(1).unwrap()[0]["number"], -1.5);
