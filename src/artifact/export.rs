@@ -212,7 +212,7 @@ mod tests {
             ExportTable::new(columns.map(|(name, values)| (name.to_owned(), values))).unwrap();
         let text = String::from_utf8(table.csv().unwrap()).unwrap();
         let expected =
-            "name,number\n'=cmd|' /C calc'!A0,-1.5\n'@x,2.0\ntread,\na=b,0.00001\n,1e300\n";
+            "name,number\n'=cmd|' /C calc'!A0,-1.5\n'@x,2.0\ntread,\na=b,0.00001\n,1e+300\n";
         assert_eq!(text, expected);
         assert_eq!(table.without(&["name"]).unwrap().names(), ["number"]);
         assert_eq!(table.first_rows(1).unwrap()[0]["number"], -1.5);
