@@ -12,6 +12,7 @@
 //! | [`probe`] | the shortest wavelength that an instrument shows as it is |
 //! | [`ladder`], [`sine_fit`] | wavelengths of superposed sines, and their amplitudes |
 //! | [`wave`], [`realisation`] | sines, and surfaces of them with random phases |
+//! | [`periodic`] | a scanned window as a periodic profile, and profiles with its spectrum |
 //! | [`synthesis`] | scans of a surface with known parameters |
 //! | `table_3_1` | the sines of the published tables |
 
@@ -22,6 +23,7 @@ pub mod filter;
 pub mod form;
 pub mod ladder;
 pub mod parameters;
+pub mod periodic;
 pub mod probe;
 pub mod profile;
 pub mod realisation;
@@ -41,6 +43,7 @@ pub use condition::{Conditioning, ConditioningError, ConditioningReport, conditi
 pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use ladder::Ladder;
 pub use parameters::RoughnessParameters;
+pub use periodic::{Closure, PeriodicProfile};
 pub use scan::{LineScan, RawScan};
 pub use self_affine::SelfAffineFit;
 pub use sine_fit::SineFit;
