@@ -146,7 +146,7 @@ pub(super) fn decode_rows<R: Row>(
 pub(super) struct TableFile {
     pub(super) info: TableInfo,
     pub(super) schema: SchemaRef,
-    /// None if there are no rows.
+    /// Empty if there are no rows.
     pub(super) batches: Vec<RecordBatch>,
 }
 

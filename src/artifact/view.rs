@@ -60,7 +60,7 @@ impl RunView {
         Ok(self.stage_manifest(stage)?.is_some_and(|manifest| manifest.output(name).is_some()))
     }
 
-    /// The manifest of the current result; none if the stage has no finished one.
+    /// The manifest of the current result; `None` if the stage has no finished one.
     ///
     /// # Errors
     /// [`ArtifactError::Unreadable`] if it is no manifest, [`ArtifactError::WrongVersion`] if it

@@ -89,6 +89,7 @@ fn by_transform(waves: &[Wave], period: f64, points: usize) -> Option<Vec<f64>> 
             Complex64::from_polar(0.5 * wave.amplitude, wave.phase - 0.5 * PI);
     }
     let mut heights = inverse.make_output_vec();
+    // Only buffers of other lengths are refused, and these are of the plan; the sum would be taken then.
     inverse.process(&mut spectrum, &mut heights).ok()?;
     Some(heights)
 }

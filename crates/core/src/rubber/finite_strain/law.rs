@@ -17,7 +17,7 @@ pub(super) trait Law {
     /// Whether `m` is `C - 1` itself, so that `T` is the second Piola-Kirchhoff stress.
     const IN_GREEN_STRAIN: bool;
 
-    /// `m` at the strain `C - 1`; none if `C` is not positive definite and the law needs that.
+    /// `m` at the strain `C - 1`; `None` if `C` is not positive definite and the law needs that.
     fn measure(strain: &Symmetric) -> Option<Measure>;
 
     /// Energy ψ in Pa of one spring.
@@ -29,7 +29,7 @@ pub(super) trait Law {
     /// Volumetric part of `T` in Pa from `m`, `m_i` and `m - m_i`.
     fn volumetric_stress(spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric;
 
-    /// Derivative of the shear part of `T` by `m` in Pa if `δm_i = fraction δm`; none if `m_i` is not the measure of a
+    /// Derivative of the shear part of `T` by `m` in Pa if `δm_i = fraction δm`; `None` if `m_i` is not the measure of a
     /// deformation.
     fn shear_tangent(
         spring: &Spring,
@@ -53,7 +53,7 @@ pub(super) trait Law {
     /// volumetric  δT = Λ/2 (V/V_i (G : δm - G_i : δm_i) G - (V/V_i - 1) G δm G)
     /// ```
     ///
-    /// none if `m` is not the measure of a deformation.
+    /// `None` if `m` is not the measure of a deformation.
     fn metric(measure: &Symmetric) -> Option<(Symmetric, f64)>;
 
     /// `V(m)` alone.

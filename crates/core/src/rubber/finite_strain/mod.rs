@@ -87,7 +87,7 @@ impl Rheology {
         }
     }
 
-    /// The measure of this law at the strain `C - 1`; none where the law has none, since `C` is not
+    /// The measure of this law at the strain `C - 1`; `None` where the law has none, since `C` is not
     /// positive definite.
     #[inline]
     pub fn measure(self, strain: &Symmetric) -> Option<Measure> {
@@ -202,7 +202,7 @@ impl FiniteStrainRubber {
     }
 
     /// Derivative of [`Self::shear_stress`] by the strain `m` if the internal tensor changes by a `fraction` of its change;
-    /// none where the law takes the inverse of an internal tensor that is not positive.
+    /// `None` where the law takes the inverse of an internal tensor that is not positive.
     pub fn shear_tangent(
         &self,
         spring: &Spring,
