@@ -8,7 +8,8 @@
 //!
 //! and sines with independent phases add: `C(s) = sum_i D_i^2 g_i(s)`. The amplitudes minimise
 //! the mean over the lags of `(log10 sum_i D_i^2 g_i(s_j) - log10 C_measured(s_j))^2`. (3.4.2-3)
-//! print the sum of logarithms; the logarithm of the sum is meant.
+//! print the sum of logarithms; the logarithm of the sum is meant. [`FitRule`] has a second rule, by
+//! which known sines come back, with the same cost of other curves.
 //!
 //! The cost is even in each D, so the unconstrained minimum in D is the minimum over `D >= 0` up to
 //! signs. It is found by a trust region with the exact Hessian, closed by Newton steps. `D_i = 0` is always stationary; an
@@ -25,6 +26,9 @@ use std::f64::consts::PI;
 use thiserror::Error;
 
 mod cost;
+mod rule;
+
+pub use rule::{FitRule, rms_height_of_correlation};
 
 /// Largest derivative of the mean squared residual by the relative amplitudes at a solution. Its
 /// round-off is about 1e-16.
@@ -46,7 +50,8 @@ pub struct FittedScale {
     ///
     /// From the covariance `sigma^2 (J^T J)^-1` of the linearised fit with the residual variance
     /// `sigma^2`, lags less waves degrees of freedom. It takes the residuals as independent; those
-    /// of neighbouring lags are not, so it is too narrow, the more so the denser the lags.
+    /// of neighbouring lags are not, so it is too narrow, the more so the denser the lags; means over lags
+    /// ([`FitRule::Sines`]) are the least independent.
     pub confidence_95: Option<f64>,
 }
 
@@ -55,7 +60,7 @@ pub struct FittedScale {
 pub struct SineFit {
     /// The sines, by ascending wavelength.
     pub scales: Vec<FittedScale>,
-    /// Root mean square of the residuals in `log10 C`.
+    /// Root mean square of the residuals in `log10 C`, or in that of its mean over lags ([`FitRule::Sines`]).
     pub rms_residual: f64,
     /// Ratio of the largest to the smallest singular value of `d log10 C(s_j) / d ln D_i`, over
     /// the amplitudes that are not zero: what a relative error of C can grow by.
@@ -137,6 +142,13 @@ impl SineFit {
     pub fn sine_scales(&self) -> Vec<SineScale> {
         self.scales.iter().map(|fitted| fitted.scale).collect()
     }
+
+    /// Root mean square height `sqrt(sum_i D_i²/2)` in metres of a surface made of the sines, whatever the
+    /// phases and the rule of the fit.
+    pub fn rms_height(&self) -> f64 {
+        let squares = self.scales.iter().map(|fitted| fitted.scale.amplitude.powi(2));
+        (0.5 * squares.sum::<f64>()).sqrt()
+    }
 }
 
 /// Height-difference correlation in m² of superposed sines with independent phases at lag `s`
@@ -150,30 +162,45 @@ fn unit_correlation(wavelength: f64, s: f64) -> f64 {
     if 2.0 * s >= wavelength { 2.0 } else { 2.0 * (PI * s / wavelength).sin().powi(2) }
 }
 
-/// Fit the amplitudes of sines of given wavelengths (metres, ascending) to a correlation.
-///
-/// Every lag weighs the same, so the lags should be log-spaced
-/// ([`sample_log_spaced`](super::HeightDifferenceCorrelation::sample_log_spaced)).
+/// Fit the amplitudes of sines of given wavelengths (metres, ascending) to a correlation, by the rule of the thesis:
+/// [`fit_sines_by`] with [`FitRule::Thesis`].
 ///
 /// # Errors
-/// Too few lags, lags or values that are not positive, wavelengths out of order, no convergence.
+/// Those of [`fit_sines_by`].
 pub fn fit_sines(
     samples: &[CorrelationSample],
     wavelengths: &[f64],
 ) -> Result<SineFit, SineFitError> {
-    check(samples, wavelengths)?;
-    let start: Vec<f64> = wavelengths.iter().map(|w| starting_amplitude(samples, *w)).collect();
-    fit_from(samples, wavelengths, &start)
+    fit_sines_by(FitRule::Thesis, samples, wavelengths)
 }
 
+/// Fit the amplitudes of sines of given wavelengths (metres, ascending) to a correlation by a rule.
+///
+/// Every lag weighs the same, so the lags should be log-spaced
+/// ([`sample_log_spaced`](super::HeightDifferenceCorrelation::sample_log_spaced)). [`FitRule::Sines`] uses those up to
+/// half the longest wavelength.
+///
+/// # Errors
+/// Too few lags, lags or values that are not positive, wavelengths out of order, no convergence.
+pub fn fit_sines_by(
+    rule: FitRule,
+    samples: &[CorrelationSample],
+    wavelengths: &[f64],
+) -> Result<SineFit, SineFitError> {
+    let compared = rule.compared(samples, wavelengths.iter().copied().fold(0.0, f64::max));
+    check(&compared, wavelengths)?;
+    let start: Vec<f64> = wavelengths.iter().map(|w| starting_amplitude(&compared, *w)).collect();
+    fit_from(rule, &compared, wavelengths, &start)
+}
+
+/// The fit from starting amplitudes, of what the rule compares.
 fn fit_from(
+    rule: FitRule,
     samples: &[CorrelationSample],
     wavelengths: &[f64],
     start: &[f64],
 ) -> Result<SineFit, SineFitError> {
-    let shapes = DMatrix::from_fn(samples.len(), wavelengths.len(), |j, i| {
-        unit_correlation(wavelengths[i], samples[j].lag)
-    });
+    let shapes = unit_shapes(rule, samples, wavelengths);
     let measured = DVector::from_iterator(samples.len(), samples.iter().map(|s| s.value.log10()));
     let full = LogarithmicCost::new(&shapes, &measured, start);
 
@@ -198,6 +225,13 @@ fn fit_from(
     check_zeros(&full, &active, &relative, wavelengths)?;
     let fitted = full.of_waves(&active);
     Ok(report(&fitted, &active, &relative, wavelengths, start, iterations))
+}
+
+/// What the rule compares of sines of amplitude 1: one column a wave, one row a lag.
+fn unit_shapes(rule: FitRule, samples: &[CorrelationSample], wavelengths: &[f64]) -> DMatrix<f64> {
+    let lags = rule::lags(samples);
+    let columns = wavelengths.iter().map(|&wavelength| rule.unit_shape(wavelength, &lags).into());
+    DMatrix::from_columns(&columns.collect::<Vec<DVector<f64>>>())
 }
 
 fn check(samples: &[CorrelationSample], wavelengths: &[f64]) -> Result<(), SineFitError> {
