@@ -11,6 +11,7 @@ use asperity::stages::{Context, StageError, Watch};
 use asperity::surface::SineScale;
 use asperity::surface::ladder::Undetermined;
 use asperity::surface::realisation::random_phases;
+use asperity::surface::sine_fit::FitRule;
 use serde_json::json;
 use std::f64::consts::PI;
 
@@ -78,6 +79,7 @@ fn parameters(shortest_wavelength_mm: f64, waves: &[u32]) -> Approximate {
         given: Vec::new(),
         shortest_wavelength_mm: Some(shortest_wavelength_mm),
         undetermined: Undetermined::Drop,
+        rule: FitRule::Thesis,
         longest_lag_mm: None,
     }
 }
@@ -104,6 +106,40 @@ fn approximate_recovers_the_amplitudes() {
     }
     let fits = folder.rows(FITS).unwrap();
     assert!(fits[0].rms_residual_log10 < 1e-6 && fits[0].warnings.is_empty(), "{fits:?}");
+    // Beyond half the longest wave the correlation is 2 sum D², that of a surface sqrt 2 higher than the waves.
+    let ratio = fits[0].rms_height_mm / fits[0].scans_rms_height_mm;
+    assert_eq!(fits[0].rms_height_ratio, ratio);
+    approx::assert_relative_eq!(ratio, 0.5_f64.sqrt(), max_relative = 1e-6);
+}
+
+/// The correlation of the thesis' waves is no sum of sines; what its rule holds at the maximum, the other rule averages.
+#[test]
+fn the_rule_of_the_fit_reaches_the_tables() {
+    let campaign = Campaign::new();
+    let folder = measured(&campaign);
+    let asked = Approximate { rule: FitRule::Sines, ..parameters(0.25, &[4]) };
+    commit(&folder, "approximate", |c| approximate::run(&asked, &folder, c)).unwrap();
+    let (fits, metadata) = folder.read_table(FITS).unwrap();
+    assert!(metadata[approximate::RULE_KEY].starts_with("sines: "), "{metadata:?}");
+    // Up to half the longest wave its correlation is that of the sine; the others, held at 2 D², are sqrt 2 higher.
+    let [rest @ .., longest] = WAVES.map(|(_, amplitude)| amplitude * amplitude);
+    let others: f64 = rest.iter().sum();
+    let ratio = ((0.5 * longest + others) / (longest + others)).sqrt();
+    approx::assert_relative_eq!(fits[0].rms_height_ratio, ratio, max_relative = 0.03);
+    let rows = folder.rows(approximate::FITTED).unwrap();
+    let (sum, count) = rows.iter().fold((0.0, 0.0), |(sum, count), row| {
+        (sum + (row.fitted_mm2 / row.measured_mm2).log10().powi(2), count + 1.0)
+    });
+    let residual = f64::sqrt(sum / count);
+    approx::assert_relative_eq!(residual, fits[0].rms_residual_log10, max_relative = 1e-9);
+}
+
+#[test]
+fn the_rule_of_the_thesis_does_not_appear_in_the_parameters() {
+    let thesis = json!(parameters(0.25, &[4]));
+    assert_eq!(thesis.get("rule"), None);
+    let sines = json!(Approximate { rule: FitRule::Sines, ..parameters(0.25, &[4]) });
+    assert_eq!(sines["rule"], "sines");
 }
 
 /// Half a window is half of the 10 mm that ingest cut, not of the longest lag that was kept.

@@ -6,7 +6,7 @@ use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::html::number;
 use crate::report::read::{rows, table};
-use crate::stages::approximate::FITTED;
+use crate::stages::approximate::{FITTED, RULE_KEY};
 use crate::stages::characterise::{
     AVERAGE, CORRELATION, RELIABLE_KEY, SELF_AFFINE, SPECTRUM, SelfAffineRow, SpectrumRow,
 };
@@ -17,7 +17,7 @@ pub(super) fn correlation(run: &RunView) -> Result<Option<Figure>, ReportError> 
     let Some(measured) = rows(run, CORRELATION)? else {
         return Ok(None);
     };
-    let fitted = rows(run, FITTED)?.unwrap_or_default();
+    let (fitted, metadata) = table(run, FITTED)?.unwrap_or_default();
     let average: Vec<(f64, f64)> = measured
         .iter()
         .filter(|row| row.scan == AVERAGE)
@@ -32,6 +32,13 @@ pub(super) fn correlation(run: &RunView) -> Result<Option<Figure>, ReportError> 
     let fits = rows(run, SELF_AFFINE)?.unwrap_or_default();
     if let Some(fit) = fits.iter().find(|row| row.scan == AVERAGE) {
         series.insert(0, self_affine(fit, &average));
+    }
+    // By the rule of sines the fitted curves are means over lags, and so is what they are to meet.
+    if metadata.get(RULE_KEY).is_some_and(|rule| rule.starts_with("sines")) {
+        let first = fitted.first().map(|row| row.waves);
+        let of_first = fitted.iter().filter(|row| Some(row.waves) == first);
+        let means = of_first.map(|row| (row.lag_mm, row.measured_mm2)).collect();
+        series.push(Series::new("scans, mean up to s", Colour::Black, Mark::OpenCircles(means)));
     }
     series.push(Series::new("scans, average", Colour::Nth(0), Mark::FilledCircles(average)));
     Ok(Some(Figure {

@@ -13,7 +13,7 @@ use crate::requirement::{InvalidRecipe, require};
 use crate::surface::SineScale;
 use crate::surface::correlation::CorrelationSample;
 use crate::surface::ladder::{Ladder, Undetermined};
-use crate::surface::sine_fit::{SineFit, fit_sines};
+use crate::surface::sine_fit::{FitRule, SineFit, SineFitError, fit_sines_by};
 use crate::units::Units;
 use rayon::prelude::*;
 pub use rows::{FITS, FITTED, FitRow, FittedRow, ScaleRow, WAVES, schemas};
@@ -47,6 +47,9 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     Some(planned.reading_if(scanned, super::characterise::CORRELATION))
 }
 
+/// Metadata key of the rule of the fit and what it does to the rms height.
+pub const RULE_KEY: &str = "rule";
+
 /// Section `[approximate]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -64,6 +67,10 @@ pub struct Approximate {
     /// than what the instrument shows (`characterise.spot_diameter_um`), or longer than half a window: `drop` them or `keep` them with a warning.
     #[serde(default)]
     pub undetermined: Undetermined,
+    /// What the fit takes for the correlation of a wave: `thesis` holds it at its first maximum, which makes the rms
+    /// height of the waves 1/sqrt(2) of that of the fitted correlation; `sines` gives known sines back.
+    #[serde(default, skip_serializing_if = "FitRule::is_default")]
+    pub rule: FitRule,
     /// Longest lag of the fit in millimetres; that of the correlation if not set.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_lag_mm: Option<f64>,
@@ -171,8 +178,9 @@ pub fn run(
             reliable,
             parameters.undetermined,
         )?;
-        let fit = fit_sines(&correlations.average, &wavelengths).map_err(in_this)?;
-        let intervals = correlations.jackknife(&fit, &wavelengths).map_err(in_this)?;
+        let rule = parameters.rule;
+        let fit = fit_sines_by(rule, &correlations.average, &wavelengths).map_err(in_this)?;
+        let intervals = correlations.jackknife(rule, &fit, &wavelengths).map_err(in_this)?;
         let beyond: Vec<String> = beyond.iter().map(ToString::to_string).collect();
         warnings.extend(beyond.iter().map(|warning| format!("{waves} waves: {warning}")));
         warnings.extend(finer_than(waves, spacing, wavelengths[0]));
@@ -183,14 +191,17 @@ pub fn run(
             },
         ));
         scales.extend(scale_rows(waves, &fit, &intervals));
-        fits.push(fit_row(waves, &fit, beyond.join("; ")));
-        fitted.extend(fitted_rows(waves, &fit, &correlations.average));
+        fits.push(fit_row(waves, &fit, &correlations.average, beyond.join("; ")));
+        fitted.extend(fitted_rows(waves, rule, &fit, &correlations.average));
     }
     let metadata: Metadata = warnings
         .iter()
         .enumerate()
         .map(|(i, w)| (format!("warning {}", i + 1), w.clone()))
-        .chain([(RELIABLE_KEY.to_owned(), reliable_mm)])
+        .chain([
+            (RELIABLE_KEY.to_owned(), reliable_mm),
+            (RULE_KEY.to_owned(), parameters.rule.statement().to_owned()),
+        ])
         .collect();
     context.pending.write_table(WAVES, &scales, &metadata)?;
     context.pending.write_table(FITS, &fits, &metadata)?;
@@ -282,9 +293,10 @@ impl Correlations {
     /// Half widths of the 95 % intervals of the amplitudes: each window is left out in turn.
     fn jackknife(
         &self,
+        rule: FitRule,
         fit: &SineFit,
         wavelengths: &[f64],
-    ) -> Result<Vec<Option<f64>>, crate::surface::sine_fit::SineFitError> {
+    ) -> Result<Vec<Option<f64>>, SineFitError> {
         let n = self.windows.len();
         if n < 3 {
             return Ok(vec![None; fit.scales.len()]);
@@ -292,7 +304,7 @@ impl Correlations {
         let replicates: Vec<Vec<f64>> = (0..n)
             .into_par_iter()
             .map(|left_out| {
-                let fit = fit_sines(&self.without(left_out), wavelengths)?;
+                let fit = fit_sines_by(rule, &self.without(left_out), wavelengths)?;
                 Ok(fit.sine_scales().iter().map(|scale| scale.amplitude).collect())
             })
             .collect::<Result<_, _>>()?;

@@ -2,7 +2,7 @@
 
 use crate::artifact::{Row, SchemaVersion, Table};
 use crate::surface::correlation::CorrelationSample;
-use crate::surface::sine_fit::{SineFit, superposed_correlation};
+use crate::surface::sine_fit::{FitRule, SineFit, rms_height_of_correlation};
 use crate::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,9 +48,20 @@ pub struct FitRow {
     pub waves: u32,
     /// Number of waves fitted, without those dropped as undetermined.
     pub waves_fitted: u32,
-    /// Root mean square residual of log10 of the correlation.
+    /// Root mean square residual of log10 of the correlation, or of its mean over the lags up to each (rule `sines`).
     #[schemars(extend("unit" = "1"))]
     pub rms_residual_log10: f64,
+    /// Root mean square height of a surface made of the waves, sqrt(sum of D²/2).
+    #[schemars(extend("unit" = "mm"))]
+    pub rms_height_mm: f64,
+    /// Root mean square height of the scans by their correlation: sqrt(C/2), with the mean of C over the lags above half
+    /// the longest.
+    #[schemars(extend("unit" = "mm"))]
+    pub scans_rms_height_mm: f64,
+    /// The former over the latter: by the rule of the thesis about 0.71; by the rule `sines` 1, less what longer
+    /// waves than the fitted ones contribute to the scans.
+    #[schemars(extend("unit" = "1"))]
+    pub rms_height_ratio: f64,
     /// Condition number of the fit: by how much relative errors of the correlation can grow.
     #[schemars(extend("unit" = "1"))]
     pub condition_number: f64,
@@ -67,10 +78,11 @@ pub struct FitRow {
 
 impl Row for FitRow {
     const SCHEMA: &'static str = "asperity.approximate.fits";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
-/// Correlation of the scans and of the fitted waves at one lag.
+/// Correlation of the scans and of the fitted waves at one lag, as the rule of the fit (metadata `rule`) compares
+/// them: by the rule `sines`, means over the lags from 0 to this one, up to half the longest wavelength.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FittedRow {
     /// Number of waves asked for.
@@ -111,11 +123,20 @@ pub(super) fn scale_rows(waves: u32, fit: &SineFit, intervals: &[Option<f64>]) -
         .collect()
 }
 
-pub(super) fn fit_row(waves: u32, fit: &SineFit, warnings: String) -> FitRow {
+pub(super) fn fit_row(
+    waves: u32,
+    fit: &SineFit,
+    average: &[CorrelationSample],
+    warnings: String,
+) -> FitRow {
+    let (rms_height, of_scans) = (fit.rms_height(), rms_height_of_correlation(average));
     FitRow {
         waves,
         waves_fitted: fit.scales.len() as u32,
         rms_residual_log10: fit.rms_residual,
+        rms_height_mm: rms_height.m_to_mm(),
+        scans_rms_height_mm: of_scans.m_to_mm(),
+        rms_height_ratio: rms_height / of_scans,
         condition_number: fit.condition_number,
         gradient_norm: fit.gradient_norm,
         iterations: fit.iterations,
@@ -126,15 +147,19 @@ pub(super) fn fit_row(waves: u32, fit: &SineFit, warnings: String) -> FitRow {
 
 pub(super) fn fitted_rows(
     waves: u32,
+    rule: FitRule,
     fit: &SineFit,
     average: &[CorrelationSample],
 ) -> Vec<FittedRow> {
     let scales = fit.sine_scales();
-    let row = |sample: &CorrelationSample| FittedRow {
+    let measured = rule.compared(average, scales.last().map_or(0.0, |scale| scale.wavelength));
+    let lags: Vec<f64> = measured.iter().map(|sample| sample.lag).collect();
+    let fitted = rule.superposed(&scales, &lags);
+    let row = |(sample, fitted): (&CorrelationSample, f64)| FittedRow {
         waves,
         lag_mm: sample.lag.m_to_mm(),
         measured_mm2: sample.value.m2_to_mm2(),
-        fitted_mm2: superposed_correlation(&scales, sample.lag).m2_to_mm2(),
+        fitted_mm2: fitted.m2_to_mm2(),
     };
-    average.iter().map(row).collect()
+    measured.iter().zip(fitted).map(row).collect()
 }
