@@ -5,13 +5,15 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::interrupt::Interrupt;
 use super::output::{already_exists, note, print, significant, write_file};
 use super::{CliError, values};
 use asperity::error_kind::HasKind;
-use asperity::surface::synthesis::{OuterRegime, SynthesisError, SyntheticAsphalt, write_text};
+use asperity::surface::synthesis::{
+    OuterRegime, Stones, SynthesisError, SyntheticAsphalt, write_text,
+};
 
 /// All scans are held in memory, 16 bytes a point.
 const MAX_TOTAL_POINTS: f64 = (1_u64 << 28) as f64;
@@ -20,6 +22,8 @@ const EXAMPLES: &str = "\
 Examples:
   The bundled specimen, bit for bit:
     asperity synth --out data/scans/specimen --force
+  The bundled rolled road: level stones with deep pits between them, skewness -1.4:
+    asperity synth --out data/scans/rolled --texture rolled --force
   Five scans of 100 mm of a smoother road with one self-affine regime:
     asperity synth --out smooth --scans 5 --length-mm 100 --spacing-um 10 --no-outer-regime --perpendicular-correlation-length-mm 0.3 --seed 7
   A look at what came out:
@@ -42,17 +46,40 @@ pub(super) struct Synth {
     specimen: SpecimenOptions,
 }
 
-/// The parameters of [`SyntheticAsphalt`]; a test compares the defaults with the bundled specimen.
+/// Surfaces with defaults of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Texture {
+    /// A random self-affine surface, its heights skewed point by point: the bundled specimen.
+    SelfAffine,
+    /// Stones with level faces and deep pits between them, under a random self-affine texture: the bundled
+    /// rolled road.
+    Rolled,
+}
+
+/// The parameters of [`SyntheticAsphalt`]; a test compares the defaults with the bundled sets.
 #[derive(Debug, Args)]
 struct SpecimenOptions {
+    /// Kind of surface. `rolled` has other defaults: 9 scans of 48 mm every 20 um, correlation lengths of 2 mm
+    /// along and 0.424 mm across, no skewness of the random surface, a spot of 20 um, missing runs of 100 um, seed 1.
+    #[arg(long, value_name = "KIND", default_value = "self-affine")]
+    texture: Texture,
+    /// Mean distance in mm between the pits of a rolled road, the size of its stones; 8 if not given.
+    #[arg(long, value_name = "MM", default_value_if("texture", "rolled", "8"), value_parser = values::finite)]
+    stone_distance_mm: Option<f64>,
+    /// Mean depth in mm of the pits of a rolled road; 2.2 if not given.
+    #[arg(long, value_name = "MM", default_value_if("texture", "rolled", "2.2"), value_parser = values::finite)]
+    stone_depth_mm: Option<f64>,
+    /// Exponent of the fall of a stone towards its pits, from 1 (a ridge) to 32 (a plate with slits); 4 if not given.
+    #[arg(long, value_name = "N", default_value_if("texture", "rolled", "4"), value_parser = values::finite)]
+    stone_flatness: Option<f64>,
     /// Number of scans.
-    #[arg(long, value_name = "N", default_value = "30", value_parser = values::count::<usize>)]
+    #[arg(long, value_name = "N", default_value_if("texture", "rolled", "9"), default_value = "30", value_parser = values::count::<usize>)]
     scans: usize,
     /// Length of a scan in mm.
-    #[arg(long, value_name = "MM", default_value = "16", value_parser = values::finite)]
+    #[arg(long, value_name = "MM", default_value_if("texture", "rolled", "48"), default_value = "16", value_parser = values::finite)]
     length_mm: f64,
     /// Distance between raw points in um.
-    #[arg(long, value_name = "UM", default_value = "2", value_parser = values::finite)]
+    #[arg(long, value_name = "UM", default_value_if("texture", "rolled", "20"), default_value = "2", value_parser = values::finite)]
     spacing_um: f64,
     /// Hurst exponent of the self-affine regime, the inner one if there are two, between 0 and 1.
     #[arg(long, value_name = "H", default_value = "0.65", value_parser = values::finite)]
@@ -67,20 +94,20 @@ struct SpecimenOptions {
     #[arg(long, conflicts_with_all = ["outer_hurst_exponent", "crossover_lag_mm"])]
     no_outer_regime: bool,
     /// Correlation length along the track in mm, where the power law meets the plateau.
-    #[arg(long, value_name = "MM", default_value = "3.5", value_parser = values::finite)]
+    #[arg(long, value_name = "MM", default_value_if("texture", "rolled", "2"), default_value = "3.5", value_parser = values::finite)]
     parallel_correlation_length_mm: f64,
     /// Correlation length across the surface in mm: the root of the plateau of the height-difference
     /// correlation, sqrt(2) Rq.
-    #[arg(long, value_name = "MM", default_value = "0.883", value_parser = values::finite)]
+    #[arg(long, value_name = "MM", default_value_if("texture", "rolled", "0.424"), default_value = "0.883", value_parser = values::finite)]
     perpendicular_correlation_length_mm: f64,
     /// Sharpness of the bend from power law to plateau, from 1 (gradual) to 32 (a corner).
     #[arg(long, value_name = "P", default_value = "4", value_parser = values::finite)]
     plateau_sharpness: f64,
     /// Skewness, -4 to 4; negative for few deep valleys below a flattened top.
-    #[arg(long, value_name = "RSK", default_value = "-1", value_parser = values::finite)]
+    #[arg(long, value_name = "RSK", default_value_if("texture", "rolled", "0"), default_value = "-1", value_parser = values::finite)]
     skewness: f64,
     /// 1/e^2 diameter in um of the spot over which the instrument averages; 0 for a point.
-    #[arg(long, value_name = "UM", default_value = "10", value_parser = values::finite)]
+    #[arg(long, value_name = "UM", default_value_if("texture", "rolled", "20"), default_value = "10", value_parser = values::finite)]
     spot_diameter_um: f64,
     /// Standard deviation of the slope (m/m) of the plane on which a specimen lies.
     #[arg(long, value_name = "SLOPE", default_value = "0.02", value_parser = values::finite)]
@@ -92,25 +119,38 @@ struct SpecimenOptions {
     #[arg(long, value_name = "FRACTION", default_value = "0.03", value_parser = values::finite)]
     missing_fraction: f64,
     /// Mean length in um of a run of missing points.
-    #[arg(long, value_name = "UM", default_value = "40", value_parser = values::finite)]
+    #[arg(long, value_name = "UM", default_value_if("texture", "rolled", "100"), default_value = "40", value_parser = values::finite)]
     missing_run_length_um: f64,
     /// Seed of the random numbers.
-    #[arg(long, value_name = "N", default_value = "35", value_parser = values::count::<u64>)]
+    #[arg(long, value_name = "N", default_value_if("texture", "rolled", "1"), default_value = "35", value_parser = values::count::<u64>)]
     seed: u64,
 }
 
 impl SpecimenOptions {
-    fn parameters(&self) -> SyntheticAsphalt {
+    /// # Errors
+    /// Options of stones for a surface that has none.
+    fn parameters(&self) -> Result<SyntheticAsphalt, CliError> {
+        let stones = [
+            ("--stone-distance-mm", self.stone_distance_mm),
+            ("--stone-depth-mm", self.stone_depth_mm),
+            ("--stone-flatness", self.stone_flatness),
+        ];
+        let rolled = self.texture == Texture::Rolled;
+        let given = stones.iter().find(|(_, value)| value.is_some());
+        if let Some((option, _)) = given.filter(|_| !rolled) {
+            return Err(CliError::input(format!("{option} needs --texture rolled")));
+        }
         let outer_regime = OuterRegime {
             hurst_exponent: self.outer_hurst_exponent,
             crossover_lag: self.crossover_lag_mm.mm_to_m(),
         };
-        SyntheticAsphalt {
+        Ok(SyntheticAsphalt {
             scans: self.scans,
             length: self.length_mm.mm_to_m(),
             spacing: self.spacing_um.um_to_m(),
             hurst_exponent: self.hurst_exponent,
             outer_regime: (!self.no_outer_regime).then_some(outer_regime),
+            stones: self.stones(),
             parallel_correlation_length: self.parallel_correlation_length_mm.mm_to_m(),
             perpendicular_correlation_length: self.perpendicular_correlation_length_mm.mm_to_m(),
             plateau_sharpness: self.plateau_sharpness,
@@ -121,17 +161,28 @@ impl SpecimenOptions {
             missing_fraction: self.missing_fraction,
             missing_run_length: self.missing_run_length_um.um_to_m(),
             seed: self.seed,
-        }
+        })
+    }
+
+    /// `None` for a self-affine surface; the options have defaults for a rolled one.
+    fn stones(&self) -> Option<Stones> {
+        Some(Stones {
+            mean_distance: self.stone_distance_mm?.mm_to_m(),
+            mean_depth: self.stone_depth_mm?.mm_to_m(),
+            flatness: self.stone_flatness?,
+        })
     }
 }
 
 /// The options of lengths, which are checked in m, with their units in m.
-const LENGTHS: [(&str, &str, &str, f64); 8] = [
+const LENGTHS: [(&str, &str, &str, f64); 10] = [
     ("length_m", "--length-mm", "mm", 1e-3),
     ("spacing_m", "--spacing-um", "um", 1e-6),
     ("outer_regime.crossover_lag_m", "--crossover-lag-mm", "mm", 1e-3),
     ("parallel_correlation_length_m", "--parallel-correlation-length-mm", "mm", 1e-3),
     ("perpendicular_correlation_length_m", "--perpendicular-correlation-length-mm", "mm", 1e-3),
+    ("stones.mean_distance_m", "--stone-distance-mm", "mm", 1e-3),
+    ("stones.mean_depth_m", "--stone-depth-mm", "mm", 1e-3),
     ("spot_diameter_m", "--spot-diameter-um", "um", 1e-6),
     ("noise_m", "--noise-um", "um", 1e-6),
     ("missing_run_length_m", "--missing-run-length-um", "um", 1e-6),
@@ -153,15 +204,14 @@ fn impossible(error: SynthesisError) -> CliError {
             "{option} is {typed} {unit}: it must be {allowed}{in_metres}"
         ));
     }
-    let name = parameter.strip_prefix("outer_regime.").unwrap_or(parameter);
-    let outer = if name == *parameter { "" } else { "outer-" };
-    let option = format!("--{outer}{}", name.replace('_', "-"));
+    let option = parameter.replace("outer_regime.", "outer-").replace("stones.", "stone-");
+    let option = format!("--{}", option.replace('_', "-"));
     CliError::input(format!("{option} is {value}: it must be {allowed}"))
 }
 
 impl Synth {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
-        let parameters = self.specimen.parameters();
+        let parameters = self.specimen.parameters()?;
         parameters.validate().map_err(impossible)?;
         let total = parameters.scans as f64 * (parameters.length / parameters.spacing);
         if total > MAX_TOTAL_POINTS {
@@ -228,8 +278,15 @@ mod tests {
     }
 
     #[test]
-    fn the_defaults_are_the_bundled_specimen() {
-        let command = Command::parse_from(["synth", "--out", "scans"]);
-        assert_eq!(command.synth.specimen.parameters(), SyntheticAsphalt::specimen());
+    fn the_defaults_are_the_bundled_sets() {
+        let parameters = |options: &[&str]| {
+            let words = ["synth", "--out", "scans"].iter().chain(options);
+            Command::parse_from(words).synth.specimen.parameters().unwrap()
+        };
+        assert_eq!(parameters(&[]), SyntheticAsphalt::specimen());
+        assert_eq!(parameters(&["--texture", "self-affine"]), SyntheticAsphalt::specimen());
+        assert_eq!(parameters(&["--texture", "rolled"]), SyntheticAsphalt::rolled());
+        let deep = parameters(&["--stone-depth-mm", "3", "--texture", "rolled", "--scans", "2"]);
+        assert_eq!((deep.stones.unwrap().mean_depth, deep.scans), (3e-3, 2));
     }
 }

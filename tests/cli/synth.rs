@@ -62,6 +62,12 @@ fn impossible_scans_are_explained() {
         ("--scans -1", "not a whole number"),
         ("--scans 1000000000", "lower --scans"),
         ("--no-outer-regime --crossover-lag-mm 1", "cannot be used with"),
+        ("--stone-depth-mm 1", "--stone-depth-mm needs --texture rolled"),
+        ("--texture rolled --stone-flatness 0", "--stone-flatness is 0: it must be from 1 to 32"),
+        (
+            "--texture rolled --stone-depth-mm -1",
+            "--stone-depth-mm is -1 mm: it must be at least 0",
+        ),
     ];
     for (options, part) in cases {
         let error = asperity_at(&format!("synth --out {{}}/new {options}"), folder.path()).error(2);

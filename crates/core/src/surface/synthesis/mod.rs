@@ -7,10 +7,14 @@
 //! the surface is the prescribed one exactly, not only before the map. The instrument (`instrument`)
 //! then averages over its spot, tilts, adds noise and loses points.
 //!
+//! Such a surface has the heights of a rolled road at every point, but the map acts on each point by itself: its pits
+//! lie anywhere. [`SyntheticAsphalt::rolled`] has stones (`stones`), and the random surface is their texture.
+//!
 //! | module | what it holds |
 //! |---|---|
 //! | `parameters` | the parameters of a synthetic surface and their ranges |
 //! | `field` | Gaussian fields of prescribed autocorrelation by circulant embedding |
+//! | `stones` | stones pressed to a level, with pits between them |
 //! | `translation` | heights with skewness from a Gaussian field |
 //! | `instrument` | spot, tilt, noise and drop-outs of a profilometer |
 //! | `text` | the text file that it would write |
@@ -20,29 +24,31 @@ mod field;
 mod instrument;
 mod parameters;
 mod random;
+mod stones;
 mod text;
 mod translation;
 
-pub use parameters::{OuterRegime, SynthesisError, SyntheticAsphalt};
+pub use parameters::{HeightMoments, OuterRegime, Stones, SynthesisError, SyntheticAsphalt};
 pub use text::write_text;
 
 use crate::surface::scan::RawScan;
 use field::GaussianField;
 use rand_pcg::Pcg64;
 use std::f64::consts::SQRT_2;
-use translation::Translation;
+use translation::{Cumulants, Translation};
 
 /// Sharpness of the crossover between two self-affine regimes: within a tenth of the local exponents'
 /// difference at half and at twice the crossover lag, and a positive spectrum at all usual exponents.
 const CROSSOVER_SHARPNESS: f64 = 4.0;
-/// The period of the surface in lengths of a scan and in parallel correlation lengths, at least.
+/// The period of the surface in lengths of a scan, parallel correlation lengths and stones, at least.
 const PERIOD_SCANS: f64 = 4.0;
 const PERIOD_CORRELATION_LENGTHS: f64 = 16.0;
+const PERIOD_STONES: f64 = 16.0;
 /// Largest number of points of a period, 0.5 GB per array.
 const MAX_POINTS: usize = 1 << 26;
 
 impl SyntheticAsphalt {
-    /// Prescribed HDC in m² at a lag `s >= 0` in metres, before spot, tilt and noise.
+    /// Prescribed HDC in m² at a lag `s >= 0` in metres, before spot, tilt and noise; stones add theirs.
     ///
     /// ```text
     /// C(s) = ξ⊥² h (1 + h^p)^(-1/p)
@@ -74,6 +80,23 @@ impl SyntheticAsphalt {
             growth * (1.0 + growth.powf(p)).powf(-1.0 / p)
         } else {
             (1.0 + growth.powf(-p)).powf(-1.0 / p)
+        }
+    }
+
+    /// Moments of the heights of the surface, before spot, tilt and noise.
+    ///
+    /// Field and stones are independent, so their cumulants κ add: `Rq² = κ2`, skewness `κ3/κ2^(3/2)`, kurtosis
+    /// `3 + κ4/κ2²`. Finite windows without their slope show less of all three.
+    pub fn height_moments(&self) -> HeightMoments {
+        let field = Translation::with_skewness(self.skewness)
+            .cumulants(self.perpendicular_correlation_length / SQRT_2);
+        let stones = self.stones.as_ref().map(Stones::cumulants);
+        let sum = |of: fn(&Cumulants) -> f64| of(&field) + stones.as_ref().map_or(0.0, of);
+        let [second, third, fourth] = [sum(|c| c.second), sum(|c| c.third), sum(|c| c.fourth)];
+        HeightMoments {
+            rms_height: second.sqrt(),
+            skewness: third / second.powf(1.5),
+            kurtosis: 3.0 + fourth / (second * second),
         }
     }
 
@@ -112,8 +135,11 @@ impl SyntheticAsphalt {
 struct Surface {
     field: GaussianField,
     translation: Translation,
-    /// Root mean square height Rq = ξ⊥/√2 in metres.
+    /// Root mean square height Rq = ξ⊥/√2 of the field in metres.
     rms_height: f64,
+    stones: Option<Stones>,
+    /// Distance between the points of the surface in metres.
+    step: f64,
     /// Points of the surface per raw point.
     refinement: usize,
 }
@@ -129,7 +155,8 @@ impl Surface {
         };
         let step = parameters.spacing / refinement;
         let period = (PERIOD_SCANS * parameters.length)
-            .max(PERIOD_CORRELATION_LENGTHS * parameters.parallel_correlation_length);
+            .max(PERIOD_CORRELATION_LENGTHS * parameters.parallel_correlation_length)
+            .max(PERIOD_STONES * parameters.stones.map_or(0.0, |stones| stones.mean_distance));
         let needed = period / step;
         if needed > MAX_POINTS as f64 {
             return Err(SynthesisError::TooManyPoints { points: needed, limit: MAX_POINTS });
@@ -145,7 +172,8 @@ impl Surface {
             plateau_sharpness: parameters.plateau_sharpness,
         })?;
         let rms_height = parameters.perpendicular_correlation_length / SQRT_2;
-        Ok(Self { field, translation, rms_height, refinement: refinement as usize })
+        let (stones, refinement) = (parameters.stones, refinement as usize);
+        Ok(Self { field, translation, rms_height, stones, step, refinement })
     }
 
     /// Heights in metres over one period.
@@ -153,6 +181,10 @@ impl Surface {
         let mut profile = self.field.realise(rng);
         for value in &mut profile {
             *value = self.rms_height * self.translation.height(*value);
+        }
+        if let Some(stones) = &self.stones {
+            let added = stones.heights(profile.len(), self.step, rng);
+            profile.iter_mut().zip(added).for_each(|(height, stone)| *height += stone);
         }
         profile
     }

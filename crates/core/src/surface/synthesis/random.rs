@@ -16,6 +16,11 @@ pub(super) fn normal_pair(rng: &mut impl Rng) -> (f64, f64) {
     (radius * cosine, radius * sine)
 }
 
+/// Sum of `shape` exponential numbers over the shape: the Erlang law of mean 1 and variance 1/shape.
+pub(super) fn erlang(shape: u32, rng: &mut impl Rng) -> f64 {
+    (0..shape).map(|_| -uniform(rng).ln()).sum::<f64>() / f64::from(shape)
+}
+
 /// Length of a run, geometric on 1, 2, ... with the given mean (at least 1).
 pub(super) fn run_length(mean: f64, rng: &mut impl Rng) -> usize {
     // A mean of 1 divides by minus infinity, which gives the required run of one point.
@@ -42,6 +47,18 @@ mod tests {
         assert!((moment(&|(_, b)| b * b) - 1.0).abs() < four * 2_f64.sqrt());
         assert!((moment(&|(a, _)| a.powi(4)) - 3.0).abs() < four * 96_f64.sqrt());
         assert!(moment(&|(a, b)| a * b).abs() < four);
+    }
+
+    #[test]
+    fn erlang_numbers_have_mean_and_variance() {
+        let mut rng = Pcg64::new(2, 3);
+        let numbers: Vec<f64> = (0..DRAWS).map(|_| erlang(9, &mut rng)).collect();
+        let mean = numbers.iter().sum::<f64>() / DRAWS as f64;
+        let squares = numbers.iter().map(|x| (x - 1.0).powi(2)).sum::<f64>() / DRAWS as f64;
+        // Four standard errors: variance 1/9; that of the squares is (2 + 6/9)/81, the excess kurtosis being 6/9.
+        let four = 4.0 / (DRAWS as f64).sqrt();
+        assert!((mean - 1.0).abs() < four / 3.0);
+        assert!((squares - 1.0 / 9.0).abs() < four * (8.0_f64 / 3.0).sqrt() / 9.0);
     }
 
     #[test]

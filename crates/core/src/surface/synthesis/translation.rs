@@ -18,6 +18,17 @@
 //! The lower sign bounds the heights by `z < Rq/t`: flattened tops above few deep valleys, negative
 //! skewness, as on rolled asphalt.
 
+/// Second to fourth cumulant of heights of mean zero; those of independent heights add.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cumulants {
+    /// Variance in m².
+    pub(super) second: f64,
+    /// Third central moment in m³.
+    pub(super) third: f64,
+    /// Fourth central moment less three squares of the variance, in m⁴.
+    pub(super) fourth: f64,
+}
+
 /// The map from a standard Gaussian field to heights of unit variance and given skewness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Translation {
@@ -40,6 +51,19 @@ impl Translation {
     pub(super) fn gaussian_autocorrelation(&self, heights: f64) -> f64 {
         let square = self.variation * self.variation;
         if square == 0.0 { heights } else { (square * heights).ln_1p() / square.ln_1p() }
+    }
+
+    /// Cumulants of heights of the given rms height in metres.
+    ///
+    /// With `w = 1 + t²` the excess kurtosis of the lognormal law is `w⁴ + 2 w³ + 3 w² - 6`.
+    pub(super) fn cumulants(&self, rms_height: f64) -> Cumulants {
+        let t = self.variation;
+        let w = 1.0 + t * t;
+        Cumulants {
+            second: rms_height.powi(2),
+            third: self.sign * (t.powi(3) + 3.0 * t) * rms_height.powi(3),
+            fourth: (w.powi(4) + 2.0 * w.powi(3) + 3.0 * w * w - 6.0) * rms_height.powi(4),
+        }
     }
 
     /// Height, in units of Rq, of a standard Gaussian value.
@@ -74,6 +98,11 @@ mod tests {
             assert!(expectation(|y| map.height(y)).abs() < 1e-11);
             assert!((expectation(|y| map.height(y).powi(2)) - 1.0).abs() < 1e-11);
             assert!((expectation(|y| map.height(y).powi(3)) - skewness).abs() < 1e-11);
+            let cumulants = map.cumulants(1.0);
+            assert!((cumulants.third - skewness).abs() < 1e-11);
+            let excess = expectation(|y| map.height(y).powi(4)) - 3.0;
+            // The excess of skewness -2 is 7.6.
+            assert!((cumulants.fourth - excess).abs() < 1e-10, "{skewness}: {excess}");
         }
     }
 
