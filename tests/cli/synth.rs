@@ -21,6 +21,19 @@ fn the_defaults_reproduce_the_bundled_scans() {
 }
 
 #[test]
+fn the_rolled_texture_reproduces_the_bundled_road() {
+    let folder = tempfile::tempdir().unwrap();
+    let listing = asperity_at("synth --out {} --texture rolled", folder.path()).result();
+    assert_eq!(listing.lines().count(), 10);
+    for number in 1..=9 {
+        let name = format!("scan_{number:02}.txt");
+        let made = fs::read(folder.path().join(&name)).unwrap();
+        let bundled = fs::read(project("data/scans/rolled").join(&name)).unwrap();
+        assert!(made == bundled, "{name}");
+    }
+}
+
+#[test]
 fn files_are_overwritten_by_force_only() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("scan_02.txt");
