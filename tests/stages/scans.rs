@@ -93,7 +93,7 @@ fn characterise_finds_the_parameters_of_a_sine() {
     approx::assert_abs_diff_eq!(row.rsk, 0.0, epsilon = 1e-9);
     // Half a step beside the peaks, at 50 points a wave: cos(π / 50).
     approx::assert_relative_eq!(row.rp_mm, amplitude * (PI / 50.0).cos(), max_relative = 1e-9);
-    approx::assert_relative_eq!(row.rv_mm, -amplitude * (PI / 50.0).cos(), max_relative = 1e-9);
+    approx::assert_relative_eq!(row.rv_mm, amplitude * (PI / 50.0).cos(), max_relative = 1e-9);
     // First differences see sin(q dx / 2) / (q dx / 2) of a slope, here 1 - 7e-4.
     let slope = 2_f64.sqrt() * PI * amplitude / WAVELENGTH_MM;
     approx::assert_relative_eq!(row.rms_slope, slope, max_relative = 5e-3);

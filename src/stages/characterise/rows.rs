@@ -36,10 +36,10 @@ pub struct ParametersRow {
     /// Rp, highest peak.
     #[schemars(extend("unit" = "mm"))]
     pub rp_mm: f64,
-    /// Rv, deepest valley, negative.
+    /// Rv, depth of the deepest valley, positive as in ISO 21920-2; the thesis (3.2.4) has it negative.
     #[schemars(extend("unit" = "mm"))]
     pub rv_mm: f64,
-    /// Rt = Rp - Rv.
+    /// Rt = Rp + Rv, total height.
     #[schemars(extend("unit" = "mm"))]
     pub rt_mm: f64,
     /// Rsk, skewness; negative for few deep valleys below a flattened top.
@@ -55,7 +55,7 @@ pub struct ParametersRow {
 
 impl Row for ParametersRow {
     const SCHEMA: &'static str = "asperity.characterise.parameters";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Average of one roughness parameter over the windows.
@@ -63,7 +63,8 @@ impl Row for ParametersRow {
 pub struct AverageRow {
     /// Name of the parameter, with its unit.
     pub parameter: String,
-    /// Mean over the windows, in the unit of the parameter.
+    /// Mean over the windows, in the unit of the parameter. Rv is a depth, positive as in ISO 21920-2;
+    /// the thesis (3.2.4) has it negative.
     #[schemars(extend("unit" = "see parameter"))]
     pub mean: f64,
     /// Standard deviation over the windows; absent for fewer than two.
@@ -78,7 +79,7 @@ pub struct AverageRow {
 
 impl Row for AverageRow {
     const SCHEMA: &'static str = "asperity.characterise.averages";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Height-difference correlation at one lag: mean of `(z(x + s) - z(x))²` over pairs of valid

@@ -16,9 +16,11 @@ pub struct RoughnessParameters {
     pub rms_height: f64,
     /// Rp, the largest `z` (3.2.3).
     pub highest_peak: f64,
-    /// Rv, the smallest `z`, negative below the mean line (3.2.4).
+    /// Rv, the depth of the deepest valley, `-min z`: positive below the mean line as in ISO 21920-2.
+    ///
+    /// The thesis (3.2.4) takes the smallest `z` itself, so its Rv has the other sign.
     pub deepest_valley: f64,
-    /// Rt = Rp - Rv (3.2.5).
+    /// Rt = Rp + Rv, the same total height as that of the thesis, Rp - Rv with its negative Rv (3.2.5).
     pub total_height: f64,
     /// Rsk, mean of `z^3` over `Rq^3` (3.2.6); negative for few deep valleys below a flattened top.
     pub skewness: f64,
@@ -97,13 +99,13 @@ impl RoughnessParameters {
             return Err(ParameterError::Flat { scan: scan.name.clone(), height: mean_line });
         }
         let highest_peak = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let deepest_valley = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        let deepest_valley = -heights.iter().copied().fold(f64::INFINITY, f64::min);
         Ok(Self {
             mean_absolute_height: heights.iter().map(|z| z.abs()).sum::<f64>() / count,
             rms_height,
             highest_peak,
             deepest_valley,
-            total_height: highest_peak - deepest_valley,
+            total_height: highest_peak + deepest_valley,
             skewness: mean(3) / rms_height.powi(3),
             kurtosis: mean(4) / rms_height.powi(4),
             rms_slope: rms_slope(scan)
@@ -129,7 +131,7 @@ pub struct AverageRoughness {
     pub rms_height: MeanEstimate,
     /// Rp in metres.
     pub highest_peak: MeanEstimate,
-    /// Rv in metres.
+    /// Rv in metres, positive.
     pub deepest_valley: MeanEstimate,
     /// Rt in metres.
     pub total_height: MeanEstimate,
@@ -186,7 +188,7 @@ mod tests {
         let p = RoughnessParameters::of(&scan(0.5, vec![1.0, -2.0, 3.0, -3.0, 1.0]), 0.0).unwrap();
         assert_eq!(p.mean_absolute_height, 2.0);
         assert_relative_eq!(p.rms_height, 4.8_f64.sqrt(), max_relative = 1e-15);
-        assert_eq!((p.highest_peak, p.deepest_valley, p.total_height), (3.0, -3.0, 6.0));
+        assert_eq!((p.highest_peak, p.deepest_valley, p.total_height), (3.0, 3.0, 6.0));
         assert_relative_eq!(p.skewness, -1.2 / 4.8_f64.powf(1.5), max_relative = 1e-14);
         assert_relative_eq!(p.kurtosis, 36.0 / 4.8_f64.powi(2), max_relative = 1e-14);
         // Steps -3, 5, -6, 4: mean square 21.5.
@@ -214,6 +216,19 @@ mod tests {
         let p = RoughnessParameters::of(&gappy, 3.0).unwrap();
         assert_relative_eq!(p.mean_absolute_height, 4.0 / 3.0, max_relative = 1e-15);
         assert_eq!(p.rms_slope, 2.0);
+    }
+
+    #[test]
+    fn a_depth_is_positive_below_the_mean_line_and_total_height_does_not_depend_on_the_line() {
+        let of = |line| {
+            let scan = scan(1.0, vec![1.0, -4.0, 2.0]);
+            let p = RoughnessParameters::of(&scan, line).unwrap();
+            (p.highest_peak, p.deepest_valley, p.total_height)
+        };
+        assert_eq!(of(0.0), (2.0, 4.0, 6.0));
+        assert_eq!(of(3.0), (-1.0, 7.0, 6.0));
+        // All of the scan lies above this line: no valley, but a ground 1 m above it.
+        assert_eq!(of(-5.0), (7.0, -1.0, 6.0));
     }
 
     #[test]
