@@ -5,10 +5,11 @@ use asperity::artifact::RunView;
 use asperity::stages;
 use asperity::stages::approximate::FITS;
 use asperity::stages::characterise::{
-    AGREEMENT, AVERAGE, CORRELATION, HURST, HurstMethod, LARGEST_DIFFERENCE_KEY, RELIABLE_KEY,
-    SPECTRUM,
+    AGREEMENT, AVERAGE, CORRELATION, HURST, HurstMethod, HurstRow, LARGEST_DIFFERENCE_KEY,
+    RELIABLE_KEY, SPECTRUM,
 };
 use asperity::stages::tables::FRICTION;
+use std::collections::BTreeSet;
 
 #[test]
 fn the_spot_reaches_the_ladder_and_the_friction_table() {
@@ -54,4 +55,12 @@ fn conventions_and_the_cosine_check_stand_in_the_artifacts() {
     assert_eq!(warned, largest > 0.1);
     let rows = view.rows(HURST).unwrap();
     assert!(rows.iter().any(|row| row.scan == AVERAGE && row.method == HurstMethod::Correlation));
+    // The exponents of a window stand beneath each other, those of the average last.
+    let scans: Vec<&str> =
+        rows.chunk_by(|a, b| a.scan == b.scan).map(|rows| rows[0].scan.as_str()).collect();
+    assert_eq!(scans.iter().collect::<BTreeSet<_>>().len(), scans.len(), "{scans:?}");
+    let spectrum_first =
+        |pair: &[HurstRow]| pair[0].scan == pair[1].scan && pair[0].method == HurstMethod::Spectrum;
+    assert!(!rows.windows(2).any(spectrum_first));
+    assert_eq!(rows.last().unwrap().scan, AVERAGE);
 }

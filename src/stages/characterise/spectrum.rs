@@ -12,6 +12,7 @@ use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 
 /// Spectrum in log-spaced bins, per window and averaged: `spectrum.arrow`.
 pub const SPECTRUM: Table<SpectrumRow> = Table::new("characterise", "spectrum.arrow");
@@ -107,7 +108,8 @@ impl std::fmt::Display for HurstMethod {
     }
 }
 
-/// Hurst exponent by one of two methods, with the range it was fitted on.
+/// Hurst exponent by one of two methods, with the range it was fitted on. The methods differ: the correlation at one lag
+/// contains waves of all lengths and bends over a decade of lags towards its plateau, the spectrum separates them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HurstRow {
     /// Name of the window, or `average`.
@@ -221,7 +223,7 @@ fn route_names(spectra: &[PowerSpectrum]) -> String {
     routes.join(", ")
 }
 
-/// Hurst exponents by both methods, and a warning where the average has none of its spectrum.
+/// Hurst exponents by both methods, window by window, and a warning where the average has none of its spectrum.
 pub(super) fn hurst_rows(
     parameters: &Characterise,
     names: &[&str],
@@ -269,19 +271,22 @@ pub(super) fn hurst_rows(
             Err(error) => missing.push((name.to_owned(), error.to_string())),
         }
     }
-    match of_spectrum(AVERAGE, spectra) {
+    let told = match of_spectrum(AVERAGE, spectra) {
         Ok(row) => {
             rows.push(row);
             let what = "Hurst exponent of the spectrum";
-            let warning = warnings::left_out("windows", names.len(), what, &missing);
-            (rows, warning.into_iter().collect())
+            warnings::left_out("windows", names.len(), what, &missing)
         }
         // Then the windows have none either, for the same reason.
         Err(error) => {
             let keys = "characterise.hurst_shortest_wavelength_mm, hurst_longest_wavelength_mm";
-            (rows, vec![format!("no Hurst exponent of the spectrum: {error} ({keys})")])
+            Some(format!("no Hurst exponent of the spectrum: {error} ({keys})"))
         }
-    }
+    };
+    // The exponents of a window beneath each other, those of the average last. The sort is stable.
+    let place: HashMap<&str, usize> = names.iter().copied().zip(0..).collect();
+    rows.sort_by_key(|row| place.get(row.scan.as_str()).copied().unwrap_or(names.len()));
+    (rows, told.into_iter().collect())
 }
 
 /// The isotropic spectrum at the bins of the average that have power; none for fewer than two.
