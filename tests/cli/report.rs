@@ -88,6 +88,14 @@ fn a_report_has_everything_and_needs_nothing() {
         let shown = format!(">{average:.*}<", decimals.max(0) as usize);
         assert!(page.contains(&shown), "{shown} of {line}");
     }
+    // Both Hurst exponents stand in one table, with the reason below, and nowhere else.
+    assert_eq!(page.matches(">Hurst exponent H</th>").count(), 1);
+    let caption =
+        "Hurst exponent H of the average, from the correlation and from the spectrum</caption>";
+    let (_, exponents) = page.split_once(caption).unwrap();
+    let (columns, after) = exponents.split_once("</table>").unwrap();
+    assert!(columns.contains(">correlation</th>") && columns.contains(">spectrum</th>"));
+    assert!(after.trim_start_matches("</div>").starts_with("<p>The two differ because"));
     // No network, and no number that is none.
     let outside = ["src=", "@import", "<script", "url("];
     assert!(outside.iter().all(|asked| !page.contains(asked)));

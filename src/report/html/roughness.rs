@@ -7,7 +7,9 @@ use crate::report::figures::microscale_slope;
 use crate::report::read::rows;
 use crate::stages;
 use crate::stages::approximate::{FITS, FitRow, ScaleRow, WAVES};
-use crate::stages::characterise::{AVERAGE, HURST, SELF_AFFINE, SelfAffineRow};
+use crate::stages::characterise::{
+    AVERAGE, HURST, HurstMethod, HurstRow, SELF_AFFINE, SelfAffineRow,
+};
 use crate::units::Units;
 use maud::{Markup, html};
 
@@ -18,12 +20,15 @@ impl Report<'_> {
         }
         let fits = rows(self.run, FITS)?.unwrap_or_default();
         let affine = rows(self.run, SELF_AFFINE)?.unwrap_or_default();
-        let average: Vec<_> = affine.iter().filter(|row| row.scan == AVERAGE).collect();
+        let average = affine.iter().find(|row| row.scan == AVERAGE);
         Ok(html! {
             (self.warnings(&[stages::characterise::STAGE, stages::approximate::STAGE, stages::realise::STAGE])?)
             (self.figure("correlation")?)
             @if !fits.is_empty() { (fit_table(&fits)) }
-            @if !average.is_empty() { (affine_table(&average)) }
+            @if let Some(fit) = average {
+                (affine_table(fit))
+                p { "Its Hurst exponent stands " a href="#spectrum" { "beside that of the spectrum" } "." }
+            }
         })
     }
 
@@ -36,14 +41,8 @@ impl Report<'_> {
         Ok(html! {
             (self.figure("spectrum")?)
             @if !average.is_empty() {
-                (table("Hurst exponent H by two routes",
-                    &["route", "H", "95 % from", "95 % to", "from / mm", "to / mm", "residual of log10"], 1,
-                    average.iter().map(|row| vec![
-                        row.method.to_string(), number(row.hurst_exponent, 3),
-                        optional(row.hurst_exponent_lower, 3), optional(row.hurst_exponent_upper, 3),
-                        number(row.shortest_mm, 3), number(row.longest_mm, 3),
-                        number(row.rms_residual_log10, 2),
-                    ])))
+                (hurst_table(&average))
+                p { (WHY_EXPONENTS_DIFFER) }
             }
         })
     }
@@ -63,6 +62,35 @@ impl Report<'_> {
             }
         })
     }
+}
+
+/// What a reader of two exponents of the same scans asks.
+const WHY_EXPONENTS_DIFFER: &str = "The two differ because the correlation at one lag contains waves of all lengths, \
+    while the spectrum separates them: towards its plateau the correlation bends over a decade of lags, which lowers \
+    its slope, and levelling, which takes away long waves, brings the bend to shorter lags. They agree only for one \
+    power law over several decades.";
+
+/// The exponents of the average side by side; a dash for one that could not be fitted.
+fn hurst_table(average: &[HurstRow]) -> Markup {
+    let of = |method| average.iter().find(|row| row.method == method);
+    let methods = [HurstMethod::Correlation, HurstMethod::Spectrum].map(of);
+    let row = |name: &str, value: fn(&HurstRow) -> Option<f64>, digits| {
+        let cells = methods.map(|row| optional(row.and_then(value), digits));
+        [vec![name.to_owned()], cells.to_vec()].concat()
+    };
+    table(
+        "Hurst exponent H of the average, from the correlation and from the spectrum",
+        &["quantity", "correlation", "spectrum"],
+        1,
+        [
+            row("Hurst exponent H", |row| Some(row.hurst_exponent), 3),
+            row("95 % from", |row| row.hurst_exponent_lower, 3),
+            row("95 % to", |row| row.hurst_exponent_upper, 3),
+            row("shortest lag, wavelength / mm", |row| Some(row.shortest_mm), 3),
+            row("longest lag, wavelength / mm", |row| Some(row.longest_mm), 3),
+            row("rms residual of log10", |row| Some(row.rms_residual_log10), 2),
+        ],
+    )
 }
 
 /// Which model the waves get, in a sentence.
@@ -140,23 +168,16 @@ fn fit_table(fits: &[FitRow]) -> Markup {
     )
 }
 
-fn affine_table(rows: &[&SelfAffineRow]) -> Markup {
+fn affine_table(fit: &SelfAffineRow) -> Markup {
     let row = |name: &str, value: f64, from: Option<f64>, to: Option<f64>| {
         vec![name.to_owned(), number(value, 3), optional(from, 3), optional(to, 3)]
     };
-    let fit = rows[0];
     let note = if fit.plateau_found { "" } else { "; no plateau within the lags: lower bounds" };
     table(
-        &format!("Self-affine fit of the average{note}"),
+        &format!("Correlation lengths of the self-affine fit of the average{note}"),
         &["quantity", "value", "95 % from", "95 % to"],
         1,
         [
-            row(
-                "Hurst exponent H",
-                fit.hurst_exponent,
-                fit.hurst_exponent_lower,
-                fit.hurst_exponent_upper,
-            ),
             row(
                 "lateral correlation length / mm",
                 fit.parallel_length_mm,

@@ -217,6 +217,30 @@ fn the_slope_of_a_power_law_is_its_hurst_exponent() {
     assert!(matches!(narrow, HurstError::TooFewBins { bins: 1 | 2, .. }));
 }
 
+/// What docs/characterise.md says of the two Hurst exponents.
+#[test]
+fn the_correlation_of_one_power_law_bends_over_a_decade_of_lags() {
+    // H = 0.8 from 0.05 to 8 mm, level beyond up to 64 mm.
+    let (longest, rolled_off, shortest) = (64e-3, 8, 1280);
+    let law = |k: usize| if k == 0 { 0.0 } else { (k.max(rolled_off) as f64).powf(-2.6) };
+    let spectrum = PowerSpectrum {
+        wavenumber_step: TAU / longest,
+        density: (0..=shortest).map(law).collect(),
+        routes: vec![Route::Periodogram(Window::None)],
+    };
+    let fit = fit_hurst_exponent(std::slice::from_ref(&spectrum), 10, 5e-5, 5e-3).unwrap();
+    // Bins of few wavenumbers, as above.
+    assert_relative_eq!(fit.hurst_exponent, 0.8, epsilon = 2e-2);
+    let correlation =
+        |lag: f64| 2.0 * (spectrum.autocovariance(0.0) - spectrum.autocovariance(lag));
+    let step = 1.05_f64;
+    let half_slope = |lag: f64| (correlation(lag * step) / correlation(lag)).ln() / step.ln() / 2.0;
+    // Figures of the page have two digits.
+    for (lag, expected) in [(2e-5, 0.91), (1e-4, 0.75), (6e-4, 0.65), (1.6e-3, 0.48)] {
+        assert_relative_eq!(half_slope(lag), expected, epsilon = 5e-3);
+    }
+}
+
 #[test]
 fn spectrum_and_correlation_agree_where_both_are_exact() {
     let (points, periods) = (4000, 40);
