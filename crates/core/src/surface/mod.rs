@@ -43,7 +43,7 @@ pub use condition::{Conditioning, ConditioningError, ConditioningReport, conditi
 pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use ladder::Ladder;
 pub use parameters::RoughnessParameters;
-pub use periodic::{Closure, PeriodicProfile};
+pub use periodic::{Closure, PeriodicError, PeriodicProfile};
 pub use scan::{LineScan, RawScan};
 pub use self_affine::SelfAffineFit;
 pub use sine_fit::SineFit;

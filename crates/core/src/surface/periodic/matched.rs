@@ -88,7 +88,7 @@ mod tests {
         };
         let heights = (0..2000).map(height).collect();
         let window = LineScan { name: "w".into(), origin: 0.0, spacing: 1e-5, heights };
-        PeriodicProfile::new(&window, Closure::Mirror, 1e-4).unwrap()
+        PeriodicProfile::new(&window, Closure::Mirror, 1e-4, 5e-5).unwrap()
     }
 
     fn skewness(waves: &[Wave], period: f64) -> f64 {

@@ -55,15 +55,15 @@ pub struct PeriodicProfile {
 pub enum PeriodicError {
     /// Too many heights are missing at one place.
     #[error(
-        "window {window}: no heights over {gap_mm:.3} mm, more than half of the shortest wavelength of {shortest_mm} mm"
+        "window {window}: no heights over {gap_mm:.3} mm, and gaps are filled up to {longest_mm} mm"
     )]
     Gap {
         /// Name of the window.
         window: String,
         /// Length of the gap in mm.
         gap_mm: f64,
-        /// Shortest wavelength in mm.
-        shortest_mm: f64,
+        /// Longest gap that is filled, in mm.
+        longest_mm: f64,
     },
     /// The points are too far apart, or the window is too short.
     #[error(
@@ -91,12 +91,18 @@ impl HasKind for PeriodicError {
 impl PeriodicProfile {
     /// The profile of a window with waves of `shortest` metres and longer.
     ///
-    /// Missing heights at the ends are cut off, others are filled by straight lines: gaps of half the shortest wavelength
-    /// cannot show a wave that is kept.
+    /// Missing heights at the ends are cut off, others are filled by straight lines over gaps of up to `longest_gap`
+    /// metres: gaps of half the shortest wavelength cannot show a wave that is kept, longer ones are road that was not
+    /// seen.
     ///
     /// # Errors
     /// [`PeriodicError::Gap`], [`PeriodicError::Unresolved`].
-    pub fn new(window: &LineScan, closure: Closure, shortest: f64) -> Result<Self, PeriodicError> {
+    pub fn new(
+        window: &LineScan,
+        closure: Closure,
+        shortest: f64,
+        longest_gap: f64,
+    ) -> Result<Self, PeriodicError> {
         let heights = without_ends(&window.heights);
         let length = heights.len() as f64 * window.spacing;
         let enough = heights.len() >= 8 && length >= 4.0 * shortest;
@@ -110,13 +116,13 @@ impl PeriodicProfile {
         }
         let (heights, filled) = fill(heights, |gap| {
             let length = gap as f64 * window.spacing;
-            if length <= 0.5 * shortest {
+            if length <= longest_gap * (1.0 + ROUND_OFF) {
                 return Ok(());
             }
             Err(PeriodicError::Gap {
                 window: window.name.clone(),
                 gap_mm: 1e3 * length,
-                shortest_mm: 1e3 * shortest,
+                longest_mm: 1e3 * longest_gap,
             })
         })?;
         let closed = match closure {
@@ -236,7 +242,8 @@ mod tests {
     fn a_mirrored_window_keeps_its_heights() {
         let heights = road(400);
         let profile =
-            PeriodicProfile::new(&window(heights.clone()), Closure::Mirror, 2.0 * SPACING).unwrap();
+            PeriodicProfile::new(&window(heights.clone()), Closure::Mirror, 2.0 * SPACING, 5e-5)
+                .unwrap();
         assert_eq!(profile.period, 800.0 * SPACING);
         let mean = heights.iter().sum::<f64>() / 400.0;
         let sampled = sample(&profile.waves, profile.period, 800);
@@ -258,7 +265,8 @@ mod tests {
     fn a_blended_window_keeps_its_middle_and_closes_without_a_step() {
         let heights = road(400);
         let profile =
-            PeriodicProfile::new(&window(heights.clone()), Closure::Blend, 2.0 * SPACING).unwrap();
+            PeriodicProfile::new(&window(heights.clone()), Closure::Blend, 2.0 * SPACING, 5e-5)
+                .unwrap();
         let count = 380;
         assert_eq!(profile.period, 380.0 * SPACING);
         let closed = blended(&heights);
@@ -279,8 +287,9 @@ mod tests {
     #[test]
     fn no_wave_is_shorter_than_asked_for_and_what_is_left_out_is_stated() {
         let heights = road(400);
-        let all = PeriodicProfile::new(&window(heights.clone()), Closure::Mirror, 2e-5).unwrap();
-        let some = PeriodicProfile::new(&window(heights), Closure::Mirror, 1e-4).unwrap();
+        let all =
+            PeriodicProfile::new(&window(heights.clone()), Closure::Mirror, 2e-5, 5e-5).unwrap();
+        let some = PeriodicProfile::new(&window(heights), Closure::Mirror, 1e-4, 5e-5).unwrap();
         assert!(some.waves.iter().all(|wave| wave.wavelength >= 1e-4 * (1.0 - 1e-9)));
         assert!(some.waves.windows(2).all(|pair| pair[0].wavelength < pair[1].wavelength));
         let power = |waves: &[Wave]| waves.iter().map(|w| 0.5 * w.amplitude.powi(2)).sum::<f64>();
@@ -294,14 +303,15 @@ mod tests {
         heights[..7].fill(f64::NAN);
         heights[100..104].fill(f64::NAN);
         let profile =
-            PeriodicProfile::new(&window(heights.clone()), Closure::Mirror, 1e-4).unwrap();
+            PeriodicProfile::new(&window(heights.clone()), Closure::Mirror, 1e-4, 5e-5).unwrap();
         assert_eq!((profile.filled, profile.period), (4, 786.0 * SPACING));
         heights[200..206].fill(f64::NAN);
-        let error = PeriodicProfile::new(&window(heights), Closure::Mirror, 1e-4).unwrap_err();
+        let error =
+            PeriodicProfile::new(&window(heights), Closure::Mirror, 1e-4, 5e-5).unwrap_err();
         assert!(error.to_string().contains("no heights over 0.060 mm"), "{error}");
-        let empty = PeriodicProfile::new(&window(vec![f64::NAN; 50]), Closure::Mirror, 1e-4);
+        let empty = PeriodicProfile::new(&window(vec![f64::NAN; 50]), Closure::Mirror, 1e-4, 5e-5);
         assert!(matches!(empty, Err(PeriodicError::Unresolved { .. })));
-        let coarse = PeriodicProfile::new(&window(road(400)), Closure::Mirror, 1.5 * SPACING);
+        let coarse = PeriodicProfile::new(&window(road(400)), Closure::Mirror, 1.5 * SPACING, 5e-5);
         assert!(coarse.unwrap_err().to_string().contains("0.01 mm apart"));
     }
 }
