@@ -18,6 +18,7 @@ const PROGRAM: &[&str] = &[
     "sweep",
     "schemas",
     "forecast",
+    "cutoff",
 ];
 
 /// Modules of the mechanics, the lowest first.

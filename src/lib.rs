@@ -67,6 +67,7 @@ pub use asperity_files as files;
 pub use asperity_scans as scans;
 
 pub mod artifact;
+pub mod cutoff;
 pub mod forecast;
 #[cfg(test)]
 mod layers;

@@ -5,7 +5,9 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `compare` | which of two runs has more friction |
 //! | `convert` | scans from one format to another |
+//! | `cutoff` | friction over the shortest wavelength |
 //! | `error` | errors with their exit codes |
 //! | `export` | friction tables for people and other programs |
 //! | `init` | a folder to start in |
@@ -30,7 +32,9 @@
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
 
+mod compare;
 mod convert;
+mod cutoff;
 mod error;
 mod export;
 mod init;
@@ -87,6 +91,9 @@ enum Command {
     Export(export::Export),
     Report(report::Report),
     Plot(plot::Plot),
+    Compare(compare::Compare),
+    #[command(name = "cutoff")]
+    Cutoff(cutoff::CutoffCommand),
     /// Solve a single contact problem, without a recipe.
     #[command(subcommand)]
     Solve(solve::Solve),
@@ -115,6 +122,8 @@ impl Arguments {
             Command::Export(command) => command.run(self.quiet),
             Command::Report(command) => command.run(self.quiet),
             Command::Plot(command) => command.run(self.quiet),
+            Command::Compare(command) => command.run(self.quiet),
+            Command::Cutoff(command) => command.run(self.quiet),
             Command::Solve(command) => command.run(self.quiet),
             Command::Rubber(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),

@@ -61,8 +61,8 @@ fn text(forecast: &Forecast) -> String {
         let grids = if coarse == fine { fine.to_string() } else { format!("{coarse} to {fine}") };
         let _ = writeln!(
             text,
-            "{} waves, {} mm/s: {} realisations, {low} to {high} MPa, {} pressures each on {grids} points",
-            curve.waves, curve.speed_mm_s, curve.realisations, curve.solves
+            "{}, {} mm/s: {} realisations, {low} to {high} MPa, {} pressures each on {grids} points",
+            curve.kind, curve.speed_mm_s, curve.realisations, curve.solves
         );
         let _ = writeln!(
             text,
@@ -95,8 +95,8 @@ fn text(forecast: &Forecast) -> String {
                 format!("{least} pairs, up to {most} if their differences vary too much")
             }
         };
-        let (waves, speed) = (pairs.waves, pairs.speed_mm_s);
-        let _ = write!(text, "multilevel of {waves} waves, {speed} mm/s: {count}");
+        let (kind, speed) = (pairs.kind, pairs.speed_mm_s);
+        let _ = write!(text, "multilevel of {kind}, {speed} mm/s: {count}");
         let _ = if pairs.pairs > 0 {
             let (columns, seconds) = (pairs.columns, pairs.seconds_each);
             writeln!(text, ", {columns} columns, about {seconds:.0} s each")
@@ -121,8 +121,8 @@ fn finite_deformation(text: &mut String, forecast: &Forecast) {
     for micro in &forecast.micro {
         let _ = writeln!(
             text,
-            "microscale of {} waves, {} mm/s: {} columns, pressed to {} MPa, about {:.0} s",
-            micro.waves,
+            "microscale of {}, {} mm/s: {} columns, pressed to {} MPa, about {:.0} s",
+            micro.kind,
             micro.speed_mm_s,
             micro.columns,
             significant(micro.most_pressure_mpa),
@@ -132,8 +132,8 @@ fn finite_deformation(text: &mut String, forecast: &Forecast) {
     for curve in &forecast.fem {
         let _ = writeln!(
             text,
-            "all {} waves at finite deformation, {} mm/s: {} realisations, {} columns, about {} pressures and {:.0} s each",
-            curve.waves,
+            "{} at finite deformation, {} mm/s: {} realisations, {} columns, about {} pressures and {:.0} s each",
+            curve.kind,
             curve.speed_mm_s,
             curve.realisations,
             curve.columns,

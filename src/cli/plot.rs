@@ -7,6 +7,7 @@ use super::run_folder;
 use super::values::meant;
 use asperity::plot::png;
 use asperity::report::figures::{ALL, Kind};
+use asperity::sweep;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -16,7 +17,9 @@ Examples:
     asperity plot --list
   Friction over contact area of a run, for the screen and for a paper:
     asperity plot friction runs/asphalt --to friction.png
-    asperity plot friction runs/asphalt --to friction.svg";
+    asperity plot friction runs/asphalt --to friction.svg
+  Friction over speed, of a sweep with a line for each temperature:
+    asperity plot speed runs/sweep --to speed.svg";
 
 /// Draw a figure of a run as SVG or PNG.
 #[derive(Debug, Args)]
@@ -57,8 +60,14 @@ impl Plot {
             )));
         };
         let as_png = self.wants_png()?;
-        let view = run_folder::view_of_case(run)?;
-        let figure = kind.figure(&view)?.ok_or_else(|| {
+        let of_sweep = kind.name == "speed" && run.join(sweep::CASES_FOLDER).is_dir();
+        let view = if of_sweep { run_folder::view(run)? } else { run_folder::view_of_case(run)? };
+        let figure = if of_sweep {
+            sweep::sweep_speed_figure(&view.rows(sweep::FRICTION)?)
+        } else {
+            kind.figure(&view)?
+        };
+        let figure = figure.ok_or_else(|| {
             let run = run.display();
             CliError::input(format!("{run} has no figure `{name}`: it needs {}", kind.requires))
         })?;

@@ -4,13 +4,15 @@ use super::{CurveForecast, Trial};
 use crate::fem::cost::solves_of_curve;
 use crate::stages::Chain;
 use crate::stages::fem::{self, Fem};
+use crate::stages::realise::SurfaceKind;
 use serde::Serialize;
 
 /// Curves with all waves at finite deformation, of one approximation at one speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FemForecast {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
     /// Realisations.
@@ -32,12 +34,12 @@ pub(super) fn curves(
     trial: &Trial,
     curves: &[CurveForecast],
 ) -> Vec<FemForecast> {
-    let solves = solves_of_curve(&chain.bem.area_fractions, parameters.pressure_ratio);
+    let solves = solves_of_curve(chain.bem.wanted().range(), parameters.pressure_ratio);
     let of_curve = |curve: &CurveForecast| {
-        let surface = trial.first_surfaces().find(|surface| surface.waves == curve.waves)?;
+        let surface = trial.first_surfaces().find(|surface| surface.kind == curve.kind)?;
         let mesh = fem::cost(parameters, surface);
         Some(FemForecast {
-            waves: curve.waves,
+            kind: curve.kind,
             speed_mm_s: curve.speed_mm_s,
             realisations: curve.realisations,
             columns: mesh.columns,
@@ -46,7 +48,7 @@ pub(super) fn curves(
             megabytes_each: mesh.megabytes(),
         })
     };
-    curves.iter().filter(|curve| parameters.solves(curve.waves)).filter_map(of_curve).collect()
+    curves.iter().filter(|curve| parameters.solves(curve.kind)).filter_map(of_curve).collect()
 }
 
 /// Wall time of the stage: its curves run side by side.

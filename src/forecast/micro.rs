@@ -6,7 +6,8 @@ use crate::fem::cost::MeshCost;
 use crate::fem::profile::RigidProfile;
 use crate::multiscale::scales::Scales;
 use crate::numerics::Interrupt;
-use crate::stages::micro::Micro;
+use crate::stages::micro::{Micro, Parting, stretches};
+use crate::stages::realise::SurfaceKind;
 use crate::stages::{SolveError, StageError};
 use crate::units::Units;
 use serde::Serialize;
@@ -14,8 +15,9 @@ use serde::Serialize;
 /// A microscale at one speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MicroForecast {
-    /// Number of waves of the approximation, the first of those that have it.
-    pub waves: u32,
+    /// Which surfaces, the first of those that have it.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
     /// Waves that it has.
@@ -39,20 +41,31 @@ pub(super) fn microscales(
     let rubber = &trial.rubber;
     let mut found: Vec<(MicroForecast, Scales)> = Vec::new();
     for surface in trial.first_surfaces() {
-        let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
-        let (Some(longest), false) = (scales.micro.last(), scales.macroscale.is_empty()) else {
+        let own = std::slice::from_ref(surface);
+        let parting = Parting::of(own, parameters.rms_slope_threshold);
+        let mut scales = parting.scales(&surface.profile);
+        if scales.micro.is_empty() || scales.macroscale.is_empty() {
             continue;
-        };
+        }
+        let mut micro_period = scales.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let mut of_stretches = 1.0;
+        if let Parting::Shorter(limit) = parting {
+            let found = stretches(parameters, own, limit)?;
+            let Some(first) = found.first() else { continue };
+            of_stretches = found.len() as f64;
+            (scales.micro, micro_period) = (first.waves.clone(), first.period);
+        }
         let shared = |other: &(MicroForecast, Scales)| {
             crate::stages::micro::same_waves(&other.1.micro, &scales.micro)
         };
-        for rows in trial.first_curves().filter(|rows| rows[0].waves == surface.waves) {
-            let (row, speed_mm_s) = (&rows[rows.len() - 1], rows[0].speed_mm_s);
+        for rows in trial.first_curves().filter(|rows| rows[0].kind == surface.kind) {
+            let most = rows.iter().max_by(|a, b| a.pressure_mpa.total_cmp(&b.pressure_mpa));
+            let (row, speed_mm_s) = (most.unwrap_or(&rows[0]), rows[0].speed_mm_s);
             if found.iter().any(|other| other.0.speed_mm_s == speed_mm_s && shared(other)) {
                 continue;
             }
             let same = |curve: &&CurveForecast| {
-                (curve.waves, curve.speed_mm_s) == (surface.waves, speed_mm_s)
+                (curve.kind, curve.speed_mm_s) == (surface.kind, speed_mm_s)
             };
             let realisations =
                 forecasts.iter().find(same).map_or(1.0, |curve| f64::from(curve.realisations));
@@ -65,24 +78,28 @@ pub(super) fn microscales(
                 Ok(solution.pressure.iter().copied().fold(0.0, f64::max))
             };
             let most = solve().map_err(|error| {
-                let (waves, realisation) = (surface.waves, surface.realisation);
+                let (kind, realisation) = (surface.kind, surface.realisation);
                 error.in_stage(|source| {
                     let source = Box::new(crate::contact::curve::CurveError::Solve(*source));
-                    StageError::Contact { waves, realisation, speed_mm_s, source }
+                    StageError::Contact { kind, realisation, speed_mm_s, source }
                 })
             })?;
             let shortest = scales.micro[0].wavelength;
             let columns = crate::stages::micro::columns(
                 parameters.columns_per_shortest_wavelength,
-                longest.wavelength,
+                micro_period,
                 shortest,
             );
             let most_pressure_mpa = most.pa_to_mpa();
-            let profile = RigidProfile::from_waves(&scales.micro, longest.wavelength);
+            let profile = RigidProfile::from_waves(&scales.micro, micro_period);
             let mesh = MeshCost::new(&profile, columns, parameters.estimate_mesh_error);
-            let each = if scales.micro.len() == 1 { 1.0 } else { realisations };
+            let each = match parting {
+                Parting::Shorter(_) => of_stretches,
+                Parting::Steep(_) if scales.micro.len() == 1 => 1.0,
+                Parting::Steep(_) => realisations,
+            };
             let forecast = MicroForecast {
-                waves: surface.waves,
+                kind: surface.kind,
                 speed_mm_s,
                 micro_waves: scales.micro.len(),
                 columns,

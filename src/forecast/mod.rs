@@ -34,6 +34,9 @@ use crate::stages;
 use crate::stages::bem::{
     self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, realisations_needed,
 };
+use crate::stages::ingest::read_windows;
+use crate::stages::micro::Parting;
+use crate::stages::realise::SurfaceKind;
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::stages::{Chain, Job};
 use crate::stages::{Stage, StageError, Watch};
@@ -88,8 +91,9 @@ impl HasKind for ForecastError {
 /// The half-space curves of one approximation at one speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CurveForecast {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
     /// Realisations: those of the recipe, or what an accuracy of the average is expected to take.
@@ -246,10 +250,12 @@ fn shortened(recipe: &Recipe) -> Recipe {
     if let Some(realise) = &mut trial.realise {
         let count = if averaged { realise.drawn().min(FIRST_REALISATIONS as u32) } else { 1 };
         realise.realisations = Some(count);
+        realise.most_windows = Some(1);
         realise.most_realisations = averaged.then_some(count);
     }
     if let Some(bem) = &mut trial.bem {
         bem.field_area_fractions.clear();
+        bem.estimate_scan_error = false;
     }
     trial
 }
@@ -260,15 +266,21 @@ struct Trial {
     surfaces: Vec<Surface>,
     curves: Vec<CurveRow>,
     solves: Vec<SolveRow>,
+    /// Windows that the run will have.
+    windows: u32,
 }
 
 impl Trial {
     fn read(view: &RunView, chain: &Chain) -> Result<Self, ForecastError> {
+        let windows =
+            if chain.realise.has_windows() { read_windows(view)?.len() as u32 } else { 0 };
+        let windows = windows.min(chain.realise.most_windows.unwrap_or(u32::MAX));
         Ok(Self {
             rubber: bem::rubber(chain.bem)?.rubber,
             surfaces: read_surfaces(view)?,
             curves: view.rows(CURVES)?,
             solves: view.rows(SOLVES)?,
+            windows,
         })
     }
 
@@ -297,33 +309,48 @@ impl Trial {
     }
 
     fn curve(&self, curve: &[CurveRow], chain: &Chain, threshold: Option<f64>) -> CurveForecast {
-        let (first, last) = (&curve[0], &curve[curve.len() - 1]);
-        let (waves, speed_mm_s) = (first.waves, first.speed_mm_s);
-        let own = |row: &&SolveRow| (row.waves, row.speed_mm_s) == (waves, speed_mm_s);
+        let by_pressure = |a: &&CurveRow, b: &&CurveRow| a.pressure_mpa.total_cmp(&b.pressure_mpa);
+        let first = curve.iter().min_by(by_pressure).unwrap_or(&curve[0]);
+        let last = curve.iter().max_by(by_pressure).unwrap_or(&curve[0]);
+        let (kind, speed_mm_s) = (first.kind, first.speed_mm_s);
+        let own = |row: &&SolveRow| (row.kind, row.speed_mm_s) == (kind, speed_mm_s);
         let points = || self.solves.iter().filter(own).map(|row| row.grid_points);
         let one = |row: &&SolveRow| own(row) && row.realisation == 1;
-        let surface = self.first_surfaces().find(|surface| surface.waves == waves);
-        let profile = surface.map_or(&[][..], |surface| &surface.profile);
+        let surface = self.first_surfaces().find(|surface| surface.kind == kind);
+        let profile = surface.map_or_else(Vec::new, |surface| match kind.method.of_a_window() {
+            true => scales::octaves_as_sines(&surface.profile),
+            false => surface.profile.clone(),
+        });
         let contact = [last.pressure_mpa.mpa_to_pa(), last.contact_area_fraction];
         let speed = speed_mm_s.mm_to_m();
         CurveForecast {
-            waves,
+            kind,
             speed_mm_s,
-            realisations: self.realisations(waves, speed_mm_s, chain),
+            realisations: self.realisations(kind, speed_mm_s, chain),
             pressures_mpa: [first.pressure_mpa, last.pressure_mpa],
             grid_points: [points().min().unwrap_or(0), points().max().unwrap_or(0)],
             solves: self.solves.iter().filter(one).count(),
-            scales: scales::scales(&self.rubber, profile, speed, contact, threshold),
+            scales: match (surface, threshold) {
+                (Some(surface), Some(threshold)) if kind.method.of_a_window() => {
+                    let parting = Parting::of(std::slice::from_ref(surface), threshold);
+                    let scales = scales::scales(&self.rubber, &profile, speed, contact, None);
+                    scales::parted(scales, parting)
+                }
+                _ => scales::scales(&self.rubber, &profile, speed, contact, threshold),
+            },
         }
     }
 
     /// Realisations that the recipe takes, or is expected to take for the accuracy it asks for.
-    fn realisations(&self, waves: u32, speed_mm_s: f64, chain: &Chain) -> u32 {
+    fn realisations(&self, kind: SurfaceKind, speed_mm_s: f64, chain: &Chain) -> u32 {
+        if kind.method.is_measured() {
+            return self.windows;
+        }
         let drawn = chain.realise.drawn();
         let Some(tolerance) = chain.bem.average_tolerance else { return drawn };
         let family: Vec<&[CurveRow]> = self
             .by_curve()
-            .filter(|curve| (curve[0].waves, curve[0].speed_mm_s) == (waves, speed_mm_s))
+            .filter(|curve| (curve[0].kind, curve[0].speed_mm_s) == (kind, speed_mm_s))
             .collect();
         let needed = realisations_needed(&family, tolerance).unwrap_or(0).max(family.len());
         drawn.min(u32::try_from(needed).unwrap_or(u32::MAX))

@@ -5,13 +5,15 @@ use crate::fem::cost::solves_of_curve;
 use crate::stages::Chain;
 use crate::stages::fem;
 use crate::stages::multilevel::{Multilevel, is_negligible};
+use crate::stages::realise::SurfaceKind;
 use serde::Serialize;
 
 /// The realisations of one approximation at one speed that are solved under both models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MultilevelForecast {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
     /// How many: the first realisations; 0 where the surface is so gentle that the models hardly differ.
@@ -32,10 +34,10 @@ pub(super) fn pairs(
     curves: &[CurveForecast],
 ) -> Vec<MultilevelForecast> {
     let fem = parameters.fem();
-    let solves = solves_of_curve(&chain.bem.area_fractions, fem.pressure_ratio);
+    let solves = solves_of_curve(chain.bem.wanted().range(), fem.pressure_ratio);
     let tolerance = chain.bem.average_tolerance;
     let of_curve = |curve: &CurveForecast| {
-        let surface = trial.first_surfaces().find(|surface| surface.waves == curve.waves)?;
+        let surface = trial.first_surfaces().find(|surface| surface.kind == curve.kind)?;
         let columns = fem::columns(&fem, surface);
         let negligible = tolerance.is_some_and(|tolerance| is_negligible(surface, tolerance));
         let limited = |count: u32| if negligible { 0 } else { count.min(chain.realise.drawn()) };
@@ -43,7 +45,7 @@ pub(super) fn pairs(
         let most_pairs =
             if tolerance.is_some() { limited(parameters.most_realisations) } else { pairs };
         Some(MultilevelForecast {
-            waves: curve.waves,
+            kind: curve.kind,
             speed_mm_s: curve.speed_mm_s,
             pairs,
             most_pairs,

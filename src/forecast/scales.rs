@@ -1,11 +1,12 @@
 //! Which model each scale of a surface gets, and why.
 
+use crate::multiscale::scales::octaves;
 use crate::rubber::Rubber;
-use crate::stages::micro::Micro;
+use crate::stages::micro::{Micro, Parting};
 use crate::surface::{SineScale, Wave};
 use crate::units::Units;
 use serde::Serialize;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Model of a scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -64,6 +65,33 @@ pub(super) fn scales(
         }
     };
     profile.iter().map(of_one).collect()
+}
+
+/// The octaves of windows with the models that the microscale gives them.
+pub(super) fn parted(mut scales: Vec<ScaleForecast>, parting: Parting) -> Vec<ScaleForecast> {
+    let Parting::Shorter(limit) = parting else { return scales };
+    for scale in &mut scales {
+        (scale.model, scale.reason) = if scale.wavelength_mm < limit.m_to_mm() {
+            let reason =
+                "one of the shortest octaves, which are the microscale (micro.rms_slope_threshold)";
+            (ScaleModel::FiniteElements, reason.into())
+        } else {
+            (ScaleModel::HalfSpace, "an octave of the macro surface".into())
+        };
+    }
+    scales
+}
+
+/// A sine for every octave of a profile, with the root mean square slope of the octave, in its middle: a profile has
+/// thousands of waves.
+pub(super) fn octaves_as_sines(profile: &[Wave]) -> Vec<Wave> {
+    let present = profile.iter().filter(|wave| wave.amplitude != 0.0);
+    let shortest = present.map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
+    let sine = |(octave, square): (i32, f64)| {
+        let wavelength = shortest * 2.0_f64.powi(octave) * SQRT_2;
+        Wave { wavelength, amplitude: (2.0 * square).sqrt() * wavelength / TAU, phase: 0.0 }
+    };
+    (0..).zip(octaves([profile].into_iter(), shortest)).map(sine).collect()
 }
 
 fn choose(slope: f64, threshold: Option<f64>) -> (ScaleModel, String) {

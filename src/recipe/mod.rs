@@ -320,6 +320,12 @@ impl Chain<'_> {
         }
         let fitted = self.approximate.numbers();
         require(
+            scans || !self.realise.has_windows(),
+            "realise.methods",
+            self.realise.methods.iter().map(|method| method.name()).collect::<Vec<_>>(),
+            "sines alone where the recipe states the waves and has no scans",
+        )?;
+        require(
             self.realise.waves.iter().all(|waves| fitted.contains(waves)),
             "realise.waves",
             &self.realise.waves,

@@ -197,7 +197,10 @@ impl Recipe {
         if let Some(realise) = &self.realise {
             let wanted =
                 "give a whole number from which the phases are drawn, or several in sweep.seeds";
-            either(!sweep.seeds.is_empty(), realise.seed.is_some(), "realise.seed", wanted)?;
+            // Measured profiles alone have no phases to draw.
+            if realise.draws() || !sweep.seeds.is_empty() {
+                either(!sweep.seeds.is_empty(), realise.seed.is_some(), "realise.seed", wanted)?;
+            }
         }
         Ok(())
     }

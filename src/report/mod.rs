@@ -2,6 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `compare` | which of two runs has more friction |
 //! | `figures` | the figures of a run, each made of its results alone |
 //! | `html` | the report of a run: one HTML document that needs nothing else |
 //! | `read` | what figures and reports read of a run |
@@ -9,6 +10,7 @@
 //! | `spreadsheet` | friction tables as a workbook |
 //! | `tables` | friction tables in the layout of the published ones: contact area in the first column, one column per realisation, their average |
 
+mod compare;
 pub mod figures;
 pub mod html;
 mod read;
@@ -16,10 +18,12 @@ mod sinusoid;
 mod spreadsheet;
 mod tables;
 
+pub use compare::{Compared, Difference, Pairing, compare};
 pub use figures::{friction_figure, rubber_fit_figure, study_figure};
 pub use read::ReportError;
 pub use sinusoid::Study;
 pub use spreadsheet::workbook;
 pub use tables::{
     About, FrictionTable, comparison_markdown, friction_tables, latex, long_table, markdown,
+    values_table,
 };

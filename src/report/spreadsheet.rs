@@ -18,8 +18,8 @@ pub fn workbook(tables: &[FrictionTable], about: &About) -> Result<Vec<u8>, Xlsx
     let mut workbook = Workbook::new();
     for (number, table) in (1..).zip(tables) {
         // Names must differ within their length and have no slash.
-        let (model, waves, speed) = (&table.model, table.waves, table.speed_mm_s);
-        let name = format!("{number} {model} {waves} waves {speed} mm per s");
+        let (model, kind, speed) = (&table.model, table.kind, table.speed_mm_s);
+        let name = format!("{number} {model} {kind} {speed} mm per s");
         let name: String = name.chars().take(LONGEST_NAME).collect();
         fill(workbook.add_worksheet().set_name(name)?, table, about)?;
     }
@@ -35,7 +35,14 @@ fn fill(sheet: &mut Worksheet, table: &FrictionTable, about: &About) -> Result<(
     let realisations = table.rows.first().map_or(0, |row| row.realisations.len());
     let names = ["contact area fraction", "average", "standard deviation", "95 % of the mean"]
         .into_iter()
-        .chain(["interpolation error", "grid error", "left-out error", "model error"])
+        .chain([
+            "scan error",
+            "interpolation error",
+            "grid error",
+            "left-out error",
+            "microscale error",
+            "model error",
+        ])
         .chain(["sum of errors"])
         .chain(["mean pressure / MPa"])
         .map(str::to_owned)
@@ -49,9 +56,11 @@ fn fill(sheet: &mut Worksheet, table: &FrictionTable, about: &About) -> Result<(
             Some(row.mean),
             row.standard_deviation,
             row.confidence_95,
+            row.scan_error,
             Some(row.interpolation_error),
             row.discretisation_error,
             Some(row.left_out_error),
+            row.microscale_error,
             row.model_error,
             row.error_estimate,
             Some(row.pressure_mpa),

@@ -2,6 +2,8 @@
 //! column per realisation, their average.
 
 use crate::artifact::{ArtifactError, ExportTable, RunView, Values};
+use crate::stages::bem::Given;
+use crate::stages::realise::SurfaceKind;
 use crate::stages::tables::{ComparisonRow, CorrectionRow, FrictionRow, Model};
 use crate::text::{latex_text, markdown_text};
 use std::fmt::Write;
@@ -9,30 +11,42 @@ use std::fmt::Write;
 /// More realisations than this are left to CSV and Parquet.
 const MOST_SHOWN: usize = 30;
 
-/// Friction over contact area for one number of waves and one speed.
+/// Friction over contact area, or over pressure, for one kind of surfaces and one speed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionTable {
     /// Contact model.
     pub model: Model,
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    pub kind: SurfaceKind,
     /// Sliding speed in mm/s.
     pub speed_mm_s: f64,
-    /// Rows by ascending contact area.
+    /// What its rows are given for.
+    pub given: Given,
+    /// Rows by ascending contact area or pressure.
     pub rows: Vec<FrictionRow>,
 }
 
 /// Sorts rows into tables.
 pub fn friction_tables(rows: &[FrictionRow]) -> Vec<FrictionTable> {
-    let key = |row: &FrictionRow| (row.model, row.waves, row.speed_mm_s);
+    let key = |row: &FrictionRow| (row.model, row.kind, row.speed_mm_s, row.given);
     rows.chunk_by(|a, b| key(a) == key(b))
         .map(|rows| FrictionTable {
             model: rows[0].model,
-            waves: rows[0].waves,
+            kind: rows[0].kind,
             speed_mm_s: rows[0].speed_mm_s,
+            given: rows[0].given,
             rows: rows.to_vec(),
         })
         .collect()
+}
+
+/// A number with four significant digits.
+pub(super) fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).max(0) as usize;
+    format!("{value:.digits$}")
 }
 
 /// What all tables of a run have in common.
@@ -62,28 +76,69 @@ impl About {
     }
 }
 
+impl About {
+    /// The rubber and its temperature: `rubber S100 at 20 °C`.
+    pub fn material(&self) -> String {
+        let temperature = self.temperature_c.map(|celsius| format!(" at {celsius} °C"));
+        format!("rubber {}{}", self.rubber, temperature.unwrap_or_default())
+    }
+}
+
 impl FrictionTable {
-    /// What the table holds, in one line.
+    /// What the table holds, in one line: all that its numbers depend on.
     pub fn caption(&self, about: &About) -> String {
         let tolerance = about.tolerance.map(|tolerance| format!(", tolerance {tolerance}"));
-        let temperature = about.temperature_c.map(|celsius| format!(" at {celsius} °C"));
         format!(
-            "Friction coefficient over contact area fraction, model {}, {} waves, {} mm/s, \
-             {}{}, rubber {}{}, asperity {}",
+            "Friction coefficient over {}, model {}, {}, {} mm/s{}, {}{}, {}, asperity {}",
+            self.in_order("contact area fraction", "mean pressure")[0],
             self.model,
-            self.waves,
+            self.road(),
             self.speed_mm_s,
+            self.other_condition(),
             self.basis(),
             tolerance.unwrap_or_default(),
-            about.rubber,
-            temperature.unwrap_or_default(),
+            about.material(),
             crate::artifact::TOOL_VERSION
         )
     }
 
+    /// What stands for the road: `measured profiles of 16 windows, waves from 0.06 mm`.
+    fn road(&self) -> String {
+        let Some(first) = self.rows.first() else { return self.kind.to_string() };
+        let windows = match first.windows {
+            0 => String::new(),
+            1 => " of 1 window".into(),
+            windows => format!(" of {windows} windows"),
+        };
+        let shortest = significant(first.shortest_wavelength_mm);
+        format!("{}{windows}, waves from {shortest} mm", self.kind)
+    }
+
+    /// Range of what is not given.
+    fn other_condition(&self) -> String {
+        let of = |value: fn(&FrictionRow) -> f64| {
+            let values = self.rows.iter().map(value);
+            let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+            let (low, high) = (significant(low), significant(high));
+            if low == high { low } else { format!("{low} to {high}") }
+        };
+        match self.given {
+            Given::Area => format!(", mean pressure {} MPa", of(|row| row.pressure_mpa)),
+            Given::Pressure => {
+                format!(", contact area fraction {}", of(|row| row.contact_area_fraction))
+            }
+        }
+    }
+
     /// Name for a file of the table, without extension.
     pub fn file_stem(&self) -> String {
-        format!("friction_{}_{}_waves_{}_mm_s", self.model, self.waves, self.speed_mm_s)
+        let over = match self.given {
+            Given::Area => "",
+            Given::Pressure => "_over_pressure",
+        };
+        format!("friction_{}_{}_{}_mm_s{over}", self.model, self.kind.file_name(), self.speed_mm_s)
     }
 
     /// Number of realisations in the averages, in words.
@@ -94,6 +149,7 @@ impl FrictionTable {
                 "{half_space} realisations of the half-space, {realisations} of them with all waves at finite \
                  deformation"
             ),
+            None if realisations == 1 => "1 realisation".into(),
             None => format!("{realisations} realisations"),
         }
     }
@@ -108,10 +164,28 @@ impl FrictionTable {
         if realisations <= MOST_SHOWN { realisations } else { 0 }
     }
 
+    /// What friction is given for first, and what follows from it.
+    fn in_order<T>(&self, area: T, pressure: T) -> [T; 2] {
+        match self.given {
+            Given::Area => [area, pressure],
+            Given::Pressure => [pressure, area],
+        }
+    }
+
+    /// Contact area fraction and pressure in MPa, the one that is given as it was typed.
+    pub fn conditions(&self, row: &FrictionRow) -> [String; 2] {
+        let (area, pressure) = (row.contact_area_fraction, row.pressure_mpa);
+        match self.given {
+            Given::Area => [area.to_string(), significant(pressure)],
+            Given::Pressure => [pressure.to_string(), significant(area)],
+        }
+    }
+
     fn header(&self) -> Vec<String> {
-        let mut header = vec!["area_fraction".to_owned()];
+        let conditions = self.in_order("contact_area_fraction", "pressure_mpa");
+        let mut header = conditions.map(str::to_owned).to_vec();
         header.extend((1..=self.shown()).map(|k| format!("realisation_{k}")));
-        let rest = ["average", "standard_deviation", "confidence_95", "error_estimate"];
+        let rest = ["mean", "standard_deviation", "confidence_95", "error_estimate"];
         header.extend(rest.map(str::to_owned));
         header
     }
@@ -120,7 +194,7 @@ impl FrictionTable {
     fn cells(&self) -> impl Iterator<Item = Vec<String>> {
         let optional = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.5}"));
         self.rows.iter().map(move |row| {
-            let mut cells = vec![row.contact_area_fraction.to_string()];
+            let mut cells = self.conditions(row).to_vec();
             let shown = row.realisations.iter().take(self.shown());
             cells.extend(shown.map(|friction| format!("{friction:.5}")));
             cells.push(format!("{:.5}", row.mean));
@@ -146,11 +220,18 @@ pub fn long_table(rows: &[FrictionRow]) -> Result<ExportTable, ArtifactError> {
         (name.to_owned(), Values::Count(rows.iter().map(value).collect()))
     };
     let models = rows.iter().map(|row| row.model.to_string()).collect();
+    let methods = rows.iter().map(|row| row.kind.method.to_string()).collect();
+    let given = rows.iter().map(|row| row.given.name().to_owned()).collect();
     let mut columns = vec![
         ("model".to_owned(), Values::Text(models)),
-        count("waves", |row| Some(row.waves)),
+        ("method".to_owned(), Values::Text(methods)),
+        count("waves", |row| Some(row.kind.waves)),
         column("speed_mm_s", |row| row.speed_mm_s),
-        column("area_fraction", |row| row.contact_area_fraction),
+        ("given".to_owned(), Values::Text(given)),
+        column("contact_area_fraction", |row| row.contact_area_fraction),
+        column("pressure_mpa", |row| row.pressure_mpa),
+        column("shortest_wavelength_mm", |row| row.shortest_wavelength_mm),
+        count("windows", |row| Some(row.windows)),
     ];
     let most = rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
     for k in 0..most {
@@ -159,17 +240,56 @@ pub fn long_table(rows: &[FrictionRow]) -> Result<ExportTable, ArtifactError> {
     }
     columns.extend([
         count("half_space_realisations", |row| row.half_space_realisations),
-        column("average", |row| row.mean),
+        column("mean", |row| row.mean),
         optional("standard_deviation", &|row| row.standard_deviation),
         optional("confidence_95", &|row| row.confidence_95),
+        optional("scan_error", &|row| row.scan_error),
         column("interpolation_error", |row| row.interpolation_error),
         optional("discretisation_error", &|row| row.discretisation_error),
         column("left_out_error", |row| row.left_out_error),
+        optional("microscale_error", &|row| row.microscale_error),
         optional("model_error", &|row| row.model_error),
         optional("error_estimate", &|row| row.error_estimate),
-        column("pressure_mpa", |row| row.pressure_mpa),
     ]);
     ExportTable::new(columns)
+}
+
+/// Rows as a table with one value of one realisation in each row.
+///
+/// # Errors
+/// [`ArtifactError::NotRepresentable`] if Arrow refuses the columns.
+pub fn values_table(rows: &[FrictionRow]) -> Result<ExportTable, ArtifactError> {
+    let values: Vec<(&FrictionRow, u32, f64)> = rows
+        .iter()
+        .flat_map(|row| (1..).zip(&row.realisations).map(move |(k, friction)| (row, k, *friction)))
+        .collect();
+    let text = |value: fn(&FrictionRow) -> String| {
+        Values::Text(values.iter().map(|(row, ..)| value(row)).collect())
+    };
+    let number = |value: fn(&FrictionRow) -> f64| {
+        Values::Float(values.iter().map(|(row, ..)| Some(value(row))).collect())
+    };
+    ExportTable::new(vec![
+        ("model".to_owned(), text(|row| row.model.to_string())),
+        ("method".to_owned(), text(|row| row.kind.method.to_string())),
+        (
+            "waves".to_owned(),
+            Values::Count(values.iter().map(|(row, ..)| Some(row.kind.waves)).collect()),
+        ),
+        ("speed_mm_s".to_owned(), number(|row| row.speed_mm_s)),
+        ("given".to_owned(), text(|row| row.given.name().to_owned())),
+        ("contact_area_fraction".to_owned(), number(|row| row.contact_area_fraction)),
+        ("pressure_mpa".to_owned(), number(|row| row.pressure_mpa)),
+        ("shortest_wavelength_mm".to_owned(), number(|row| row.shortest_wavelength_mm)),
+        (
+            "realisation".to_owned(),
+            Values::Count(values.iter().map(|(_, k, _)| Some(*k)).collect()),
+        ),
+        (
+            "friction_coefficient".to_owned(),
+            Values::Float(values.iter().map(|(.., f)| Some(*f)).collect()),
+        ),
+    ])
 }
 
 /// Tables as Markdown, each with its caption.
@@ -275,10 +395,14 @@ pub fn latex(tables: &[FrictionTable], about: &About) -> String {
     let mut text = String::new();
     for table in tables {
         let n = table.shown();
-        let mut header = vec!["$A_c/A_0$".to_owned()];
+        let conditions = table.in_order("$A_c/A_0$", "$p$ / MPa");
+        let mut header = conditions.map(str::to_owned).to_vec();
         header.extend((1..=n).map(|k| k.to_string()));
-        header.extend(["average", "s.d.", "95\\,\\%", "error"].map(str::to_owned));
-        let columns = format!("S[table-format=1.3]{}", "S[table-format=1.5]".repeat(n + 4));
+        header.extend(["mean", "s.d.", "95\\,\\%", "error"].map(str::to_owned));
+        let columns = format!(
+            "S[table-format=1.3]S[table-format=1.4]{}",
+            "S[table-format=1.5]".repeat(n + 4)
+        );
         let braced: Vec<String> = header.iter().map(|cell| format!("{{{cell}}}")).collect();
         let _ = writeln!(text, "% needs the packages booktabs and siunitx");
         let _ = writeln!(text, "\\begin{{table}}\n\\centering");
@@ -305,16 +429,21 @@ mod tests {
     fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
         FrictionRow {
             model: Model::Bem,
-            waves,
+            kind: SurfaceKind::sines(waves),
             speed_mm_s: 10.0,
+            given: Given::Area,
             contact_area_fraction: area,
+            shortest_wavelength_mm: 0.06,
+            windows: 9,
             realisations: realisations.to_vec(),
             half_space_realisations: None,
             mean: 0.5,
             standard_deviation: (realisations.len() > 1).then_some(0.1),
             confidence_95: None,
+            scan_error: None,
             interpolation_error: 0.0,
             left_out_error: 0.0,
+            microscale_error: None,
             model_error: None,
             discretisation_error: None,
             error_estimate: Some(0.25),
@@ -330,9 +459,11 @@ mod tests {
         let tables = friction_tables(&rows);
         assert_eq!(tables.len(), 2);
         let text = markdown(&tables, &about("50 % silica_x"));
-        assert!(text.contains("| area_fraction | realisation_1 | realisation_2 | average |"));
+        assert!(text.contains(
+            "| contact_area_fraction | pressure_mpa | realisation_1 | realisation_2 | mean |"
+        ));
         assert!(
-            text.contains("| 0.002 | 0.70100 | 0.53646 | 0.50000 | 0.10000 |  | 0.25000 |"),
+            text.contains("| 0.002 | 1.000 | 0.70100 | 0.53646 | 0.50000 | 0.10000 |  | 0.25000 |"),
             "{text}"
         );
         let text = latex(&tables, &about("50 % silica_x"));
@@ -348,8 +479,8 @@ mod tests {
         assert_eq!(
             tables[0].caption(&all),
             format!(
-                "Friction coefficient over contact area fraction, model bem, 8 waves, 10 mm/s, 2 \
-                 realisations, tolerance 0.01, rubber x at -10 °C, asperity {}",
+                "Friction coefficient over contact area fraction, model bem, 8 waves of 9 windows, waves from 0.06000 mm, \
+                 10 mm/s, mean pressure 1.000 MPa, 2 realisations, tolerance 0.01, rubber x at -10 °C, asperity {}",
                 crate::artifact::TOOL_VERSION
             )
         );
@@ -359,20 +490,32 @@ mod tests {
     #[test]
     fn a_document_shows_hundreds_of_realisations_by_their_average() {
         let table = &friction_tables(&[row(8, 0.05, &[0.5; 31])])[0];
-        assert_eq!(table.header().len(), 5);
+        assert_eq!(table.header().len(), 6);
         assert!(markdown(std::slice::from_ref(table), &about("x")).contains("31 realisations"));
-        assert_eq!(long_table(&table.rows).unwrap().names().len(), 4 + 31 + 10);
+        assert_eq!(long_table(&table.rows).unwrap().names().len(), 9 + 31 + 11);
     }
 
     #[test]
     fn the_long_table_leaves_absent_realisations_empty() {
         let table = long_table(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
-        assert_eq!(table.names().len(), 16);
+        assert_eq!(table.names().len(), 22);
         let rows = table.first_rows(2).unwrap();
         assert_eq!(
             (&rows[0]["realisation_2"], &rows[1]["realisation_2"]),
             (&json!(0.8), &json!(null))
         );
+    }
+
+    #[test]
+    fn the_layout_of_values_has_a_row_for_each() {
+        let table = values_table(&[row(8, 0.1, &[0.7, 0.8]), row(9, 0.1, &[0.9])]).unwrap();
+        let rows = table.first_rows(9).unwrap();
+        assert_eq!(rows.len(), 3);
+        assert_eq!(
+            (&rows[1]["realisation"], &rows[1]["friction_coefficient"]),
+            (&json!(2), &json!(0.8))
+        );
+        assert_eq!((&rows[2]["waves"], &rows[2]["method"]), (&json!(9), &json!("sines")));
     }
 
     /// Names that would end a caption, a comment or the run of LaTeX.

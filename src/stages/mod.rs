@@ -5,7 +5,7 @@
 //! | [`ingest`] | scan files | windows of equal spacing (HDF5), a report |
 //! | [`characterise`] | windows | roughness parameters, correlation, spectrum, self-affine fit |
 //! | [`approximate`] | correlation | amplitudes of superposed sines |
-//! | [`realise`] | amplitudes | waves with random phases |
+//! | [`realise`] | windows, amplitudes | surfaces that stand for the road, as waves |
 //! | [`bem`] | waves, rubber | solved contacts, friction over area |
 //! | [`micro`] | waves, friction over area, rubber | the steepest waves under both models, their local law |
 //! | [`hybrid`] | waves, friction over area, microscale | friction over area, corrected |
@@ -18,7 +18,7 @@ pub mod bem;
 pub mod characterise;
 pub mod contract;
 pub mod fem;
-mod friction;
+pub(crate) mod friction;
 pub mod hybrid;
 pub mod ingest;
 pub(crate) mod kept;
@@ -206,6 +206,9 @@ pub enum StageError {
         /// Number of waves.
         waves: u32,
     },
+    /// A window that cannot be made periodic.
+    #[error("{0} (realise.longest_gap_mm, realise.shortest_wavelength_mm)")]
+    Periodic(#[from] crate::surface::PeriodicError),
     /// A rubber file.
     #[error(transparent)]
     Rubber(#[from] crate::rubber::RubberFileError),
@@ -220,10 +223,10 @@ pub enum StageError {
         source: crate::rubber::RubberError,
     },
     /// A contact.
-    #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}{}", keys::of_curve(.source))]
+    #[error("{kind}, realisation {realisation}, {speed_mm_s} mm/s: {source}{}", keys::of_curve(.source))]
     Contact {
-        /// Number of waves.
-        waves: u32,
+        /// Which surfaces.
+        kind: realise::SurfaceKind,
         /// Realisation.
         realisation: u32,
         /// Speed in mm/s.
@@ -233,14 +236,14 @@ pub enum StageError {
     },
     /// An accuracy of the averages that the realisations are far from giving.
     #[error(
-        "the relative accuracy {tolerance:?} asks for about {needed:.0e} realisations of {waves} waves at {speed_mm_s} \
+        "the relative accuracy {tolerance:?} asks for about {needed:.0e} realisations of {kind} at {speed_mm_s} \
          mm/s, by the spread of the first: {most} may be drawn (realise.most_realisations), which give about \
          {attainable:.1e}; ask for that with tolerance, or allow more realisations",
         needed = *needed as f64
     )]
     TooFewRealisations {
-        /// Number of waves.
-        waves: u32,
+        /// Which surfaces.
+        kind: realise::SurfaceKind,
         /// Speed in mm/s.
         speed_mm_s: f64,
         /// The wanted relative accuracy.
@@ -254,11 +257,11 @@ pub enum StageError {
     },
     /// A surface whose waves are all steeper than the threshold.
     #[error(
-        "approximation {waves}: no wave is less steep than {threshold}, nothing is left for the macro surface; raise micro.rms_slope_threshold"
+        "{kind}: no wave is less steep than {threshold}, nothing is left for the macro surface; raise micro.rms_slope_threshold"
     )]
     NoMacroscale {
-        /// Number of waves.
-        waves: u32,
+        /// Which surfaces.
+        kind: realise::SurfaceKind,
         /// The threshold.
         threshold: f64,
     },
@@ -281,10 +284,10 @@ pub enum StageError {
         source: Box<SolveError>,
     },
     /// A surface with all waves at finite deformation.
-    #[error("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {source}")]
+    #[error("{kind}, realisation {realisation}, {speed_mm_s} mm/s: {source}")]
     FiniteDeformation {
-        /// Number of waves.
-        waves: u32,
+        /// Which surfaces.
+        kind: realise::SurfaceKind,
         /// Realisation.
         realisation: u32,
         /// Speed in mm/s.
@@ -334,6 +337,7 @@ impl HasKind for StageError {
             Self::Spectrum(source) => source.kind(),
             Self::Ladder(source) => source.kind(),
             Self::SineFit { source, .. } => source.kind(),
+            Self::Periodic(source) => source.kind(),
             Self::Rubber(source) => source.kind(),
             Self::Contact { source, .. } => source.kind(),
             Self::Microscale { source, .. }

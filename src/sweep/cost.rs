@@ -13,6 +13,7 @@ use crate::recipe::Case;
 use crate::stages::bem::{self, SolveRow};
 use crate::stages::fem::{self, Fem};
 use crate::stages::kept::SolveTask;
+use crate::stages::realise::SurfaceKind;
 use crate::stages::{StageError, Watch};
 use crate::units::Units;
 use rayon::prelude::*;
@@ -47,7 +48,7 @@ struct Trial {
 pub(super) struct Costs<'a> {
     solvers: &'a Solvers,
     /// By specimen and number of waves.
-    trials: BTreeMap<(Option<String>, u32), Trial>,
+    trials: BTreeMap<(Option<String>, SurfaceKind), Trial>,
     /// Seconds of this machine for one of the reference.
     pub slowness: f64,
 }
@@ -88,7 +89,7 @@ impl<'a> Costs<'a> {
                 }
             })
             .collect::<Result<_, SweepError>>()?;
-        let mut trials: BTreeMap<(Option<String>, u32), Trial> = BTreeMap::new();
+        let mut trials: BTreeMap<(Option<String>, SurfaceKind), Trial> = BTreeMap::new();
         let (mut measured, mut expected) = (0.0, 0.0);
         for ((case, task), solved) in curves.iter().zip(solved) {
             let Some((rows, elapsed, there)) = solved else { continue };
@@ -98,7 +99,7 @@ impl<'a> Costs<'a> {
                 (measured, expected) = (measured + elapsed, expected + seconds);
             }
             let finest = rows.iter().map(|row| row.grid_points).max().unwrap_or(0) as f64;
-            let key = (prepared.cases[*case].specimen.clone(), task.surface.waves);
+            let key = (prepared.cases[*case].specimen.clone(), task.surface.kind);
             let grid_points = task.grid_points(&solvers.bem) as f64;
             let trial =
                 trials.entry(key).or_insert_with(|| Trial { grid_points, ends: Vec::new() });
@@ -113,7 +114,7 @@ impl<'a> Costs<'a> {
         match task {
             Task::Bem(task) => {
                 let grid_points = task.grid_points(&self.solvers.bem) as f64;
-                let trial = self.trials.get(&(case.specimen.clone(), task.surface.waves));
+                let trial = self.trials.get(&(case.specimen.clone(), task.surface.kind));
                 trial.map_or_else(
                     || Cost {
                         seconds: SECONDS_PER_POINT_AND_ITERATION * TYPICAL_ITERATIONS * grid_points,
@@ -136,7 +137,7 @@ impl<'a> Costs<'a> {
     }
 
     fn all_waves(&self, task: &fem::Task, parameters: &Fem) -> Cost {
-        let solves = solves_of_curve(&self.solvers.bem.area_fractions, parameters.pressure_ratio);
+        let solves = solves_of_curve(self.solvers.bem.wanted().range(), parameters.pressure_ratio);
         let mesh = fem::cost(parameters, &task.surface);
         finite(mesh, mesh.seconds_of_solves(solves))
     }

@@ -18,6 +18,7 @@
 //! |---|---|
 //! | `collect` | from the solves of all shards to the tables of all cases |
 //! | `cost` | what a task is expected to cost, by rules that give the same everywhere: shares must not depend on how busy a machine was |
+//! | `figure` | friction of the cases over speed |
 //! | `layout` | where the files of a sweep are |
 //! | `plan` | the plan of a sweep: which tasks are missing and which shard solves them |
 //! | `prepare` | the cases of a sweep with their surfaces and rubbers: what is cheap, and is done before anything is dealt |
@@ -29,6 +30,7 @@
 
 mod collect;
 mod cost;
+mod figure;
 mod layout;
 mod plan;
 mod prepare;
@@ -39,6 +41,7 @@ mod table;
 mod task;
 
 pub use collect::{Cases, MissingTask, ShardState, check, collect, run, states};
+pub use figure::sweep_speed_figure;
 pub use layout::{CASES_FOLDER, Layout, RECIPE_FILE, SURFACES_FOLDER};
 pub use plan::{PlannedShard, PlannedTask, ShardTasks, SweepPlan, plan, read_plan};
 pub use prepare::Prepared;

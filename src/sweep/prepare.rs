@@ -164,7 +164,9 @@ impl Prepared {
         let surfaces = &self.surfaces[&case.surfaces];
         let silent = Watch { progress: &|_, _| (), interrupted: watch.interrupted };
         let wanted = |task: Task| Wanted::new(number, task, solvers, rubber);
-        let curves = bem::missing(&solvers.bem, rubber, surfaces, store, silent)?;
+        let view = RunView::of(self.layout.surfaces(case));
+        let replicates = bem::replicates(&solvers.bem, surfaces, &view)?;
+        let curves = bem::missing(&solvers.bem, rubber, surfaces, &replicates, store, silent)?;
         let (micro, fem) = (case.recipe.micro.is_some(), case.recipe.fem.is_some());
         let multilevel = case.recipe.multilevel.is_some();
         if !curves.is_empty() || !(micro || fem || multilevel) {

@@ -28,7 +28,7 @@ pub struct SweepFrictionRow {
 
 impl Row for SweepFrictionRow {
     const SCHEMA: &'static str = "asperity.sweep.friction";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
 impl SweepFrictionRow {
@@ -48,6 +48,8 @@ impl SweepFrictionRow {
 mod tests {
     use super::*;
     use crate::artifact::{Metadata, columns, read_table, write_table};
+    use crate::stages::bem::Given;
+    use crate::stages::realise::SurfaceKind;
     use crate::stages::tables::Model;
 
     #[test]
@@ -65,17 +67,22 @@ mod tests {
     fn a_row_reads_back() {
         let friction = FrictionRow {
             model: Model::Bem,
-            waves: 8,
+            kind: SurfaceKind::sines(8),
             speed_mm_s: 10.0,
+            given: Given::Area,
             contact_area_fraction: 0.05,
+            shortest_wavelength_mm: 0.06,
+            windows: 9,
             realisations: vec![0.1 + 0.2, 0.7],
             half_space_realisations: None,
             mean: 0.5,
             standard_deviation: Some(0.2),
             confidence_95: None,
+            scan_error: None,
             interpolation_error: 1e-4,
             discretisation_error: None,
             left_out_error: 0.0,
+            microscale_error: None,
             model_error: None,
             error_estimate: None,
             pressure_mpa: 1.5,

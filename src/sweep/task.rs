@@ -51,11 +51,11 @@ impl Solvers {
         match case.job()? {
             Job::Chain(Chain { bem, micro, fem, multilevel, .. }) => {
                 let multilevel = multilevel.copied().unwrap_or_default();
-                let area_fractions = bem.area_fractions.clone();
+                let wanted = bem.wanted();
                 Ok(Self {
                     bem: bem.clone(),
                     micro: micro.cloned().unwrap_or_default(),
-                    fem: fem::Sweep { fem: fem.cloned().unwrap_or_default(), area_fractions },
+                    fem: fem::Sweep { fem: fem.cloned().unwrap_or_default(), wanted },
                     multilevel,
                     pairs: multilevel.sweep(bem),
                 })

@@ -285,14 +285,18 @@ fn exports_are_complete_or_refused() {
     assert!(message.contains("none/friction.md"), "{message}");
 
     let csv = export("out --format csv --speed 50").result();
-    let header = "area_fraction,realisation_1,realisation_2,average,standard_deviation,\
-                  confidence_95,left_out_error,error_estimate";
+    let header = "contact_area_fraction,pressure_mpa,realisation_1,realisation_2,mean,\
+                  standard_deviation,confidence_95,left_out_error,error_estimate";
     assert_eq!(csv.lines().next(), Some(header));
     assert_eq!(csv.lines().count(), 1 + 3);
     for (format, start) in [("markdown", ""), ("latex", ""), ("svg", "<svg")] {
         let text = export(&format!("out --format {format}")).result();
         assert!(text.contains(start) && !text.is_empty(), "{format}");
     }
+    let values = export("out --format csv --layout long --speed 50").result();
+    assert!(values.lines().next().unwrap().ends_with("realisation,friction_coefficient"));
+    assert_eq!(values.lines().count(), 1 + 3 * 2);
+    assert!(export("out --format latex --layout long").error(2).contains("csv and parquet"));
     export("out --format csv --to tables").result();
     assert_eq!(fs::read_dir(campaign.path("tables")).unwrap().count(), 2);
     export("out --format parquet --to friction.parquet").result();

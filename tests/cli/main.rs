@@ -14,6 +14,7 @@ mod names;
 mod odd_files;
 mod oversights;
 mod report;
+mod road;
 mod rubber;
 mod rubber_sweeps;
 mod solve;

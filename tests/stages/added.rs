@@ -64,7 +64,7 @@ fn compute(inputs: &Inputs, context: &mut Context) -> Result<Vec<String>, StageE
     let rows = inputs.results.rows(FRICTION)?;
     let largest = rows.iter().max_by(|a, b| a.mean.total_cmp(&b.mean));
     let rows: Vec<LargestRow> = largest
-        .map(|row| LargestRow { waves: row.waves, friction: row.mean })
+        .map(|row| LargestRow { waves: row.kind.waves, friction: row.mean })
         .into_iter()
         .collect();
     context.pending.write_rows(LARGEST_TABLE, &rows)?;

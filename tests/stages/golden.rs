@@ -34,7 +34,7 @@ fn smoke() -> Vec<Golden> {
     let rows = RunView::of(folder.path()).rows(FRICTION).unwrap();
     let each = |row: FrictionRow| {
         let golden = move |(realisation, friction_coefficient)| Golden {
-            waves: row.waves,
+            waves: row.kind.waves,
             speed_mm_s: row.speed_mm_s,
             contact_area_fraction: row.contact_area_fraction,
             realisation,

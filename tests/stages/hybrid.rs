@@ -298,9 +298,9 @@ fn a_microscale_without_a_solution_leaves_its_values_out() {
     let (_, view) = solved(&campaign);
     let rows = view.rows(HYBRID).unwrap();
     let corrected = |row: &HybridRow| row.friction_coefficient.is_some();
-    assert!(rows.iter().any(|row| row.waves == 2 && corrected(row)));
-    assert!(rows.iter().any(|row| row.waves == 3));
-    assert!(!rows.iter().any(|row| row.waves == 3 && corrected(row)));
+    assert!(rows.iter().any(|row| row.kind.waves == 2 && corrected(row)));
+    assert!(rows.iter().any(|row| row.kind.waves == 3));
+    assert!(!rows.iter().any(|row| row.kind.waves == 3 && corrected(row)));
     let warnings = |stage| view.stage_manifest(stage).unwrap().unwrap().warnings.join("\n");
     let micro = warnings("micro");
     assert!(micro.contains("3 waves, 20 mm/s: the microscale has not one sample: "), "{micro}");
@@ -401,7 +401,7 @@ fn finite_elements_of_all_waves_are_solved_for_the_numbers_of_waves_that_are_ask
     campaign.write("recipe.toml", &text);
     let (_, view) = solved(&campaign);
     let solves = view.rows(FEM_SOLVES).unwrap();
-    assert!(!solves.is_empty() && solves.iter().all(|row| row.waves == 1), "{solves:?}");
+    assert!(!solves.is_empty() && solves.iter().all(|row| row.kind.waves == 1), "{solves:?}");
     campaign.write("recipe.toml", &text.replace("[fem]\nwaves = [1]", "[fem]\nwaves = [3]"));
     let error = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
     assert!(error.contains("fem.waves") && error.contains("realise.waves"), "{error}");

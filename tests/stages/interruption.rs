@@ -35,8 +35,8 @@ fn the_number_of_threads_does_not_show() {
     complete(&campaign, "one", 1);
     complete(&campaign, "two", 2);
     let one = digests(&campaign.path("one"));
-    // ingest 8, characterise 11, approximate 3, realise 1, bem 4, tables 1.
-    assert_eq!(one.len(), 28);
+    // ingest 8, characterise 11, approximate 4, realise 1, bem 5, tables 2.
+    assert_eq!(one.len(), 31);
     assert_eq!(one, digests(&campaign.path("two")));
 }
 

@@ -19,6 +19,7 @@ mod keys;
 mod metrology;
 mod multilevel;
 mod reliability;
+mod road;
 mod scans;
 mod schemas;
 mod sinusoid;

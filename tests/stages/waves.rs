@@ -108,7 +108,7 @@ fn approximate_recovers_the_amplitudes() {
     assert!(fits[0].rms_residual_log10 < 1e-6 && fits[0].warnings.is_empty(), "{fits:?}");
     // Beyond half the longest wave the correlation is 2 sum D², that of a surface sqrt 2 higher than the waves.
     let ratio = fits[0].rms_height_mm / fits[0].scans_rms_height_mm;
-    assert_eq!(fits[0].rms_height_ratio, ratio);
+    approx::assert_relative_eq!(fits[0].rms_height_ratio, ratio, max_relative = 1e-12);
     approx::assert_relative_eq!(ratio, 0.5_f64.sqrt(), max_relative = 1e-6);
 }
 
@@ -125,7 +125,9 @@ fn the_rule_of_the_fit_reaches_the_tables() {
     let [rest @ .., longest] = WAVES.map(|(_, amplitude)| amplitude * amplitude);
     let others: f64 = rest.iter().sum();
     let ratio = ((0.5 * longest + others) / (longest + others)).sqrt();
-    approx::assert_relative_eq!(fits[0].rms_height_ratio, ratio, max_relative = 0.03);
+    // The waves next to the longest are still rising within half of it, which pulls them towards the rule of the thesis.
+    let found = fits[0].rms_height_ratio;
+    assert!(0.5_f64.sqrt() < found && found < ratio, "{found} {ratio}");
     let rows = folder.rows(approximate::FITTED).unwrap();
     let (sum, count) = rows.iter().fold((0.0, 0.0), |(sum, count), row| {
         (sum + (row.fitted_mm2 / row.measured_mm2).log10().powi(2), count + 1.0)
@@ -179,17 +181,13 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     commit(&folder, "approximate", |c| approximate::run(&parameters(0.25, &[3, 4]), &folder, c))
         .unwrap();
     let realised = |seed| -> Vec<Surface> {
-        let parameters = Realise {
-            waves: vec![3, 4],
-            realisations: Some(5),
-            most_realisations: None,
-            seed: Some(seed),
-        };
+        let section = format!("waves = [3, 4]\nrealisations = 5\nseed = {seed}");
+        let parameters: Realise = toml::from_str(&section).unwrap();
         commit(&folder, "realise", |c| realise::run(&parameters, &folder, c)).unwrap();
         read_surfaces(&folder).unwrap()
     };
     let surfaces = realised(7);
-    let names: Vec<_> = surfaces.iter().map(|s| (s.waves, s.realisation)).collect();
+    let names: Vec<_> = surfaces.iter().map(|s| (s.kind.waves, s.realisation)).collect();
     let expected: Vec<_> = [3, 4].iter().flat_map(|w| (1..=5).map(move |r| (*w, r))).collect();
     assert_eq!(names, expected);
 
@@ -197,7 +195,7 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     for surface in &surfaces {
         let scales: Vec<SineScale> = fitted
             .iter()
-            .filter(|row| row.waves == surface.waves)
+            .filter(|row| row.waves == surface.kind.waves)
             .map(|row| SineScale {
                 wavelength: row.wavelength_mm / 1e3,
                 amplitude: row.amplitude_mm / 1e3,
@@ -245,7 +243,7 @@ fn approximations_with_the_same_surfaces_are_solved_once_and_compared_under_both
     super::run(&super::recipe(&campaign), &out);
     let view = RunView::of(out);
     let surfaces = read_surfaces(&view).unwrap();
-    assert!(surfaces.len() == 2 && surfaces.iter().all(|surface| surface.waves == 1));
+    assert!(surfaces.len() == 2 && surfaces.iter().all(|surface| surface.kind.waves == 1));
     let warnings = view.stage_manifest("realise").unwrap().unwrap().warnings;
     assert!(warnings[0].starts_with("2 waves: the surfaces are those of 1 waves"), "{warnings:?}");
     let friction = view.rows(FRICTION).unwrap();

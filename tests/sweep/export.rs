@@ -40,7 +40,7 @@ fn a_sweep_is_exported_whole() {
     let campaign = campaign();
     alone(&campaign);
     let csv = quietly(&campaign, "export alone --format csv").result();
-    assert!(csv.starts_with("specimen,rubber,temperature_c,seed,model,waves"), "{csv}");
+    assert!(csv.starts_with("specimen,rubber,temperature_c,seed,model,method,waves"), "{csv}");
     assert_eq!(csv.lines().count(), 49);
     let markdown = quietly(&campaign, "export alone --format markdown --speed 50").result();
     assert_eq!(markdown.matches("## specimen ").count(), 8);

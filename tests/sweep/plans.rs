@@ -52,6 +52,27 @@ fn shards_are_balanced_and_every_task_is_in_one() {
     assert!(seconds.iter().all(|s| (s / mean - 1.0).abs() < 0.2), "{seconds:?}");
 }
 
+/// The curves for the error of the scans are tasks like others: two realisations without each of the three windows of one
+/// specimen and the two of the other.
+#[test]
+fn the_error_of_the_scans_is_planned_with_the_rest() {
+    let campaign = campaign();
+    campaign.edit("recipe.toml", "estimate_scan_error = false\n", "");
+    let path = plan(&campaign, "out", 2);
+    let tasks: usize = shares(&path, 2).iter().map(Vec::len).sum();
+    assert_eq!(tasks, 28 + 4 * 2 * 2 * (3 + 2));
+    for shard in 0..2 {
+        quietly(&campaign, &format!("sweep run {path} --shard {shard}")).result();
+    }
+    quietly(&campaign, &format!("sweep collect {path}")).result();
+    let csv = quietly(&campaign, "export out --format csv").result();
+    let names: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let place = names.iter().position(|name| *name == "scan_error").unwrap();
+    for line in csv.lines().skip(1) {
+        assert!(line.split(',').nth(place).unwrap().parse::<f64>().unwrap() > 0.0, "{line}");
+    }
+}
+
 #[test]
 fn what_is_solved_is_not_planned_again() {
     let campaign = campaign();

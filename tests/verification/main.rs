@@ -8,6 +8,7 @@ mod limits;
 mod oracle;
 mod properties;
 mod robustness;
+mod scatter;
 mod surfaces;
 mod thesis_table_5_3;
 mod thesis_table_a_7;

@@ -20,15 +20,18 @@ use super::run_folder;
 use asperity::artifact::{ArtifactError, ExportTable, RunView};
 use asperity::report::{
     About, FrictionTable, comparison_markdown, friction_figure, friction_tables, latex, long_table,
-    markdown, workbook,
+    markdown, values_table, workbook,
 };
 use asperity::stages::Stage;
 use asperity::stages::ingest::{FAULTS, REPORT, WINDOWS, cleaning_markdown};
+use asperity::stages::realise::Method;
 use asperity::stages::tables::{COMPARISON, CORRECTIONS, FRICTION, FrictionRow, Model, NOTE_KEY};
 use asperity::sweep::STAGE;
 
 const EXAMPLES: &str = "\
 Examples:
+  Every value of every realisation as one table, for statistics elsewhere:
+    asperity export runs/asphalt --format csv --layout long --to values.csv
   All tables of a run, one CSV file each:
     asperity export runs/asphalt --format csv --to tables
   One table on standard output, in the layout of the published ones:
@@ -63,15 +66,18 @@ pub(super) struct Export {
     #[arg(long)]
     comparison: bool,
     /// What was found wrong in the scans and what was done with it, as a Markdown document.
-    #[arg(long, conflicts_with_all = ["comparison", "table", "model", "waves", "speed"])]
+    #[arg(long, conflicts_with_all = ["comparison", "table", "model", "method", "waves", "speed"])]
     cleaning: bool,
     /// Any one table of the run, such as hybrid/local, as csv or parquet.
-    #[arg(long, value_name = "STAGE/TABLE", conflicts_with_all = ["comparison", "model", "waves", "speed"])]
+    #[arg(long, value_name = "STAGE/TABLE", conflicts_with_all = ["comparison", "model", "method", "waves", "speed"])]
     table: Option<String>,
     /// File to write, or for several CSV tables the folder; standard output if not given.
     #[arg(long, value_name = "PATH")]
     to: Option<PathBuf>,
-    /// Only this number of waves.
+    /// Only surfaces that are made of the road in this way.
+    #[arg(long, value_enum)]
+    method: Option<Method>,
+    /// Only this number of sines.
     #[arg(long, value_name = "N", value_parser = super::values::count::<u32>, allow_negative_numbers = true)]
     waves: Option<u32>,
     /// Only this speed in mm/s.
@@ -80,9 +86,18 @@ pub(super) struct Export {
     /// Only this contact model.
     #[arg(long, value_enum)]
     model: Option<Model>,
+    /// Layout of csv and parquet: wide has a column for each realisation, long a row for each value of each realisation.
+    #[arg(long, value_enum, default_value_t = Layout::Wide)]
+    layout: Layout,
     /// Overwrite files that are there already.
     #[arg(long)]
     force: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Layout {
+    Wide,
+    Long,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -130,13 +145,16 @@ impl Export {
         let rows: Vec<FrictionRow> = rows.into_iter().filter(|row| self.chosen(row)).collect();
         if rows.is_empty() {
             return Err(CliError::input(format!(
-                "{} has no table of that model, number of waves and speed: leave --model, --waves \
-                 or --speed out to see all",
+                "{} has no table of that model, method, number of waves and speed: leave --model, --method, \
+                 --waves or --speed out to see all",
                 self.run.display()
             )));
         }
         let tables = friction_tables(&rows);
         let about = About::of(&view)?;
+        if self.layout == Layout::Long {
+            return self.long(&rows);
+        }
         match self.format {
             Format::Csv => self.csv(&tables),
             Format::Markdown => self.text(&markdown(&tables, &about)),
@@ -148,7 +166,7 @@ impl Export {
                 let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
                 write_file(path, self.force, |out| out.write_all(&bytes))
             }
-            Format::Svg => self.text(&friction_figure(&rows).svg()?),
+            Format::Svg => self.text(&friction_figure(&rows, &about).svg()?),
             Format::Parquet => {
                 let Some(path) = &self.to else {
                     return Err(CliError::input("Parquet is binary: give a file with --to"));
@@ -158,10 +176,27 @@ impl Export {
         }
     }
 
+    /// One row for each value of each realisation.
+    fn long(&self, rows: &[FrictionRow]) -> Result<(), CliError> {
+        let table = values_table(rows)?;
+        match (self.format, &self.to) {
+            (Format::Csv, None) => print(&csv_text(&table)?),
+            (Format::Csv, Some(path)) => self.bytes(path, table.csv()),
+            (Format::Parquet, Some(path)) => self.bytes(path, table.parquet()),
+            (Format::Parquet, None) => {
+                Err(CliError::input("Parquet is binary: give a file with --to"))
+            }
+            _ => Err(CliError::input(
+                "--layout long is for csv and parquet; the other formats are for people",
+            )),
+        }
+    }
+
     /// Whether a row is of the model, number of waves and speed that were asked for.
     fn chosen(&self, row: &FrictionRow) -> bool {
         self.model.is_none_or(|model| model == row.model)
-            && self.waves.is_none_or(|waves| waves == row.waves)
+            && self.method.is_none_or(|method| method == row.kind.method)
+            && self.waves.is_none_or(|waves| row.kind.is_sines(waves))
             && self.speed.is_none_or(|speed| speed == row.speed_mm_s)
     }
 
@@ -269,7 +304,7 @@ impl Export {
             (None, [table]) => print(&csv_text(&published(table)?)?),
             (None, _) => Err(CliError::input(format!(
                 "there are {} tables: give a folder with --to, or choose one with --model, \
-                 --waves and --speed",
+                 --method, --waves and --speed",
                 tables.len()
             ))),
             (Some(path), [table]) if path.extension().is_some() => {
@@ -320,11 +355,16 @@ fn csv_text(table: &ExportTable) -> Result<String, CliError> {
 fn published(table: &FrictionTable) -> Result<ExportTable, CliError> {
     let mut other = vec![
         "model",
+        "method",
         "waves",
         "speed_mm_s",
+        "given",
+        "shortest_wavelength_mm",
+        "windows",
+        "scan_error",
         "interpolation_error",
         "discretisation_error",
-        "pressure_mpa",
+        "microscale_error",
     ];
     if table.rows.iter().all(|row| row.half_space_realisations.is_none()) {
         other.extend(["half_space_realisations", "model_error"]);

@@ -9,7 +9,10 @@ const STAGE: &str = "sinusoid";
 
 impl Export {
     pub(super) fn study(&self, view: &RunView) -> Result<(), CliError> {
-        let chosen = self.model.is_some() || self.waves.is_some() || self.speed.is_some();
+        let chosen = self.model.is_some()
+            || self.method.is_some()
+            || self.waves.is_some()
+            || self.speed.is_some();
         if self.comparison || chosen {
             return Err(CliError::input(
                 "the study of one sine has no tables to choose from: leave --comparison, --model, \

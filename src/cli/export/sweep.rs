@@ -30,7 +30,11 @@ impl Export {
     }
 
     fn keyed_table(&self, view: &RunView) -> Result<(), CliError> {
-        if self.model.is_some() || self.waves.is_some() || self.speed.is_some() {
+        if self.model.is_some()
+            || self.method.is_some()
+            || self.waves.is_some()
+            || self.speed.is_some()
+        {
             return Err(CliError::input(
                 "the table of a sweep has model, waves and speed as columns: leave --model, --waves and --speed out",
             ));

@@ -8,6 +8,7 @@ use crate::report::read::rows;
 use crate::stages::bem::SOLVES;
 use crate::stages::fem::{FEM_SOLVES, FemSolveRow};
 use crate::stages::micro::SAMPLES;
+use crate::stages::multilevel;
 use crate::stages::tables::{FRICTION, FrictionRow, Model};
 
 /// Errors below this are round-off; they would stretch the axis.
@@ -19,7 +20,7 @@ pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let friction = rows(run, FRICTION)?.unwrap_or_default();
     let half_space: Vec<FrictionRow> =
         friction.into_iter().filter(|row| row.model == Model::Bem).collect();
-    let tables = grouped(&half_space, |row| (row.waves, speed_key(row.speed_mm_s)));
+    let tables = grouped(&half_space, |row| (row.kind, speed_key(row.speed_mm_s)));
     panels.extend(tables.into_values().filter_map(|rows| parts(&rows)));
     let caption = "Wall time of every contact against the estimated relative error of its friction \
                    by grid or mesh, and the parts of the estimated error of the averaged friction of \
@@ -32,7 +33,7 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
     let bem = rows(run, SOLVES)?.unwrap_or_default();
     let micro = rows(run, SAMPLES)?.unwrap_or_default();
     let fem = rows(run, FEM_SOLVES)?.unwrap_or_default();
-    let multilevel = rows(run, FEM_SOLVES)?.unwrap_or_default();
+    let multilevel = rows(run, multilevel::FEM_SOLVES)?.unwrap_or_default();
     let relative = |error: f64, friction: f64, seconds: f64| {
         let error = (error / friction).abs();
         (error.is_finite() && error > LEAST_ERROR && seconds > 0.0).then_some((error, seconds))
@@ -74,11 +75,13 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
 /// Parts of the relative error over contact area; none where none is known.
 fn parts(rows: &[&FrictionRow]) -> Option<Panel> {
     type Part = (&'static str, fn(&FrictionRow) -> Option<f64>);
-    let parts: [Part; 5] = [
+    let parts: [Part; 7] = [
         ("realisations (95 %)", |row| row.confidence_95),
+        ("scans (95 %)", |row| row.scan_error),
         ("interpolation", |row| Some(row.interpolation_error)),
         ("grid", |row| row.discretisation_error),
         ("waves left out", |row| Some(row.left_out_error)),
+        ("stretches of the microscale", |row| row.microscale_error),
         ("sum", |row| row.error_estimate),
     ];
     let series = parts.into_iter().enumerate().filter_map(|(number, (name, part))| {
@@ -94,7 +97,7 @@ fn parts(rows: &[&FrictionRow]) -> Option<Panel> {
     });
     let series: Vec<Series> = series.collect();
     (!series.is_empty()).then(|| Panel {
-        title: format!("Parts of the error, {}", heading(rows[0].waves, rows[0].speed_mm_s)),
+        title: format!("Parts of the error, {}", heading(rows[0].kind, rows[0].speed_mm_s)),
         x: Axis::from_zero("contact area fraction Ac/A0"),
         y: Axis::logarithmic("estimated relative error of friction"),
         series,

@@ -7,6 +7,7 @@ use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::hybrid::{HYBRID, HybridRow};
 use crate::stages::micro::{SAMPLES, SampleRow};
+use crate::stages::realise::SurfaceKind;
 
 /// Friction of the microscale under both models, their difference, and what it makes of the
 /// friction of the whole surface.
@@ -17,12 +18,12 @@ pub(super) fn correction(run: &RunView) -> Result<Option<Figure>, ReportError> {
     }
     let curves = rows(run, HYBRID)?.unwrap_or_default();
     let mut panels = vec![];
-    for (waves, rows) in grouped(&samples, |row| row.waves) {
-        panels.push(both_models(waves, &rows));
-        panels.push(difference(waves, &rows));
+    for (kind, rows) in grouped(&samples, |row| row.kind) {
+        panels.push(both_models(kind, &rows));
+        panels.push(difference(kind, &rows));
     }
-    for (waves, rows) in grouped(&curves, |row| row.waves) {
-        panels.extend(whole_surface(waves, &rows));
+    for (kind, rows) in grouped(&curves, |row| row.kind) {
+        panels.extend(whole_surface(kind, &rows));
     }
     Ok(Some(Figure {
         caption:
@@ -59,7 +60,7 @@ fn pressure() -> Axis {
     Axis::logarithmic("mean pressure p / MPa")
 }
 
-fn both_models(waves: u32, rows: &[&SampleRow]) -> Panel {
+fn both_models(kind: SurfaceKind, rows: &[&SampleRow]) -> Panel {
     let mut series = vec![];
     for (colour, curve, first) in curves(rows) {
         let line = |value: fn(&SampleRow) -> f64| -> Vec<_> {
@@ -72,14 +73,14 @@ fn both_models(waves: u32, rows: &[&SampleRow]) -> Panel {
         series.push(named(format!("half-space, {speed} mm/s"), first, colour, half_space));
     }
     Panel {
-        title: format!("Microscale of {waves} waves"),
+        title: format!("Microscale of {kind}"),
         x: pressure(),
         y: Axis::from_zero("friction coefficient µ"),
         series,
     }
 }
 
-fn difference(waves: u32, rows: &[&SampleRow]) -> Panel {
+fn difference(kind: SurfaceKind, rows: &[&SampleRow]) -> Panel {
     let mut series = vec![];
     for (colour, curve, first) in curves(rows) {
         let value = |row: &SampleRow| row.friction_finite_deformation - row.friction_half_space;
@@ -97,7 +98,7 @@ fn difference(waves: u32, rows: &[&SampleRow]) -> Panel {
         ));
     }
     Panel {
-        title: format!("Change by finite deformation, {waves} waves"),
+        title: format!("Change by finite deformation, {kind}"),
         x: pressure(),
         y: Axis::linear("change of friction Δµ"),
         series,
@@ -105,7 +106,7 @@ fn difference(waves: u32, rows: &[&SampleRow]) -> Panel {
 }
 
 /// Corrections of the realisations; none where no local pressure was sampled.
-fn whole_surface(waves: u32, rows: &[&HybridRow]) -> Option<Panel> {
+fn whole_surface(kind: SurfaceKind, rows: &[&HybridRow]) -> Option<Panel> {
     let speeds = grouped(rows, |row| speed_key(row.speed_mm_s)).into_values().enumerate();
     let series: Vec<Series> = speeds
         .map(|(number, rows)| {
@@ -119,7 +120,7 @@ fn whole_surface(waves: u32, rows: &[&HybridRow]) -> Option<Panel> {
     let any =
         series.iter().any(|s| matches!(&s.mark, Mark::OpenCircles(points) if !points.is_empty()));
     any.then(|| Panel {
-        title: format!("Correction of the surface, {waves} waves"),
+        title: format!("Correction of the surface, {kind}"),
         x: pressure(),
         y: Axis::linear("correction of friction Δµ"),
         series,

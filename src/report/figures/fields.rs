@@ -15,7 +15,7 @@ const CLOSE_UP: f64 = 0.06;
 
 /// Pressure and separation of one contact.
 struct Field {
-    waves: u32,
+    surfaces: String,
     realisation: u32,
     speed_mm_s: f64,
     area: f64,
@@ -26,20 +26,20 @@ struct Field {
     separation: Vec<f64>,
 }
 
-/// The place of a dataset: number of waves, realisation, speed and area.
-type Place = (u32, u32, f64, f64);
+/// The place of a dataset: surfaces, realisation, speed and area.
+type Place<'a> = (&'a str, u32, f64, f64);
 
-fn place(name: &str) -> Option<(Place, &str)> {
+fn place(name: &str) -> Option<(Place<'_>, &str)> {
     let mut parts = name.split('/');
+    let surfaces = parts.next()?;
     let mut part = |prefix: &str| parts.next()?.strip_prefix(prefix);
-    let waves = part("waves_")?.parse().ok()?;
     let realisation = part("realisation_")?.parse().ok()?;
     let speed = part("speed_")?.strip_suffix("_mm_s")?.parse().ok()?;
     let area = part("area_")?.parse().ok()?;
-    Some(((waves, realisation, speed, area), parts.next()?))
+    Some(((surfaces, realisation, speed, area), parts.next()?))
 }
 
-/// For each speed one contact: the most waves, the first realisation, the middle one of the areas.
+/// For each speed one contact: the surfaces that come last by name, so that measured ones go before sines, the first realisation, the middle one of the areas.
 fn fields(run: &RunView) -> Result<Vec<Field>, ReportError> {
     if !run.has(FIELDS)? {
         return Ok(vec![]);
@@ -60,15 +60,15 @@ fn fields(run: &RunView) -> Result<Vec<Field>, ReportError> {
     Ok(middles.filter_map(|place| field(&datasets, place)).collect())
 }
 
-fn field(datasets: &[ArrayDataset], wanted: Place) -> Option<Field> {
+fn field(datasets: &[ArrayDataset], wanted: Place<'_>) -> Option<Field> {
     let of = |quantity: &str| {
         datasets.iter().find(|dataset| place(&dataset.name) == Some((wanted, quantity)))
     };
     let (pressure, separation) = (of("pressure")?, of("separation")?);
     let Some(Attribute::Float(spacing)) = pressure.attributes.get("spacing_m") else { return None };
-    let (waves, realisation, speed_mm_s, area) = wanted;
+    let (surfaces, realisation, speed_mm_s, area) = wanted;
     Some(Field {
-        waves,
+        surfaces: surfaces.to_owned(),
         realisation,
         speed_mm_s,
         area,
@@ -80,8 +80,9 @@ fn field(datasets: &[ArrayDataset], wanted: Place) -> Option<Field> {
 
 impl Field {
     fn title(&self) -> String {
-        let Self { waves, realisation, speed_mm_s, area, .. } = self;
-        format!("{waves} waves, realisation {realisation}, {speed_mm_s} mm/s, Ac/A0 = {area}")
+        let Self { surfaces, realisation, speed_mm_s, area, .. } = self;
+        let surfaces = surfaces.replace('_', " ");
+        format!("{surfaces}, realisation {realisation}, {speed_mm_s} mm/s, Ac/A0 = {area}")
     }
 
     fn points(&self, value: impl Fn(usize) -> f64) -> Points {
@@ -152,7 +153,7 @@ pub(super) fn deformation(run: &RunView) -> Result<Option<Figure>, ReportError> 
     let surfaces = read_surfaces(run)?;
     let series = |field: &Field| {
         let of_field = |surface: &&Surface| {
-            (surface.waves, surface.realisation) == (field.waves, field.realisation)
+            surface.kind.file_name() == field.surfaces && surface.realisation == field.realisation
         };
         let Some(surface) = surfaces.iter().find(of_field) else { return vec![] };
         let height = |i: usize| {

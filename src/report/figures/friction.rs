@@ -1,71 +1,123 @@
 //! Friction over contact area.
 
-use super::{grouped, heading};
+use super::{full_heading, grouped, heading};
 use crate::artifact::RunView;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
+use crate::report::tables::{About, significant};
+use crate::stages::bem::Given;
+use crate::stages::realise::SurfaceKind;
 use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, Model};
 
 const AREA: &str = "contact area fraction Ac/A0";
-const FRICTION_LABEL: &str = "friction coefficient µ";
+const PRESSURE: &str = "mean pressure p / MPa";
+pub(super) const FRICTION_LABEL: &str = "friction coefficient µ";
 
 /// Friction of a run, see [`friction_figure`].
 pub(super) fn friction(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let rows = rows(run, FRICTION)?;
-    Ok(rows.map(|rows| friction_figure(&rows)))
+    let about = About::of(run)?;
+    Ok(rows.map(|rows| friction_figure(&rows, &about)))
 }
 
-/// Averaged friction over contact area: a panel for each number of waves and speed, in which the models
-/// are compared; rows of one model alone are one panel, in which the speeds are compared.
-pub fn friction_figure(rows: &[FrictionRow]) -> Figure {
-    let tables = grouped(rows, |row| (row.waves, super::speed_key(row.speed_mm_s)));
+/// Averaged friction over contact area, or over pressure where that is given: a panel for each kind of surfaces and speed,
+/// in which the models are compared; rows of one model alone are one panel, in which the speeds are compared.
+pub fn friction_figure(rows: &[FrictionRow], about: &About) -> Figure {
+    let tables = grouped(rows, |row| (row.given, row.kind, super::speed_key(row.speed_mm_s)));
     let tables: Vec<Vec<&FrictionRow>> = tables.into_values().collect();
     let one_model = rows.iter().all(|row| row.model == rows[0].model);
-    let panel = |title: String, series: Vec<Series>| Panel {
+    let panel = |title: String, given: Given, series: Vec<Series>| Panel {
         title,
-        x: Axis::from_zero(AREA),
+        x: axis(given, rows.iter().filter(|row| row.given == given).map(abscissa)),
         y: Axis::from_zero(FRICTION_LABEL),
         series,
     };
     let panels = if one_model && tables.len() > 1 {
-        let series = tables.iter().enumerate().flat_map(|(number, table)| {
-            curve(table, &heading(table[0].waves, table[0].speed_mm_s), Colour::Nth(number), false)
+        let of_one = tables.chunk_by(|a, b| a[0].given == b[0].given).map(|tables| {
+            let series = tables.iter().enumerate().flat_map(|(number, table)| {
+                let shortest = significant(table[0].shortest_wavelength_mm);
+                let name =
+                    format!("{} from {shortest} mm, {} mm/s", table[0].kind, table[0].speed_mm_s);
+                curve(table, &name, Colour::Nth(number), false)
+            });
+            panel(
+                format!("Model {}, {}", rows[0].model, about.material()),
+                tables[0][0].given,
+                series.collect(),
+            )
         });
-        vec![panel(format!("Model {}", rows[0].model), series.collect())]
+        of_one.collect()
     } else {
         let compared = tables.iter().map(|table| {
             let models = table.chunk_by(|a, b| a.model == b.model).flat_map(|model| {
                 let (colour, dashed) = look(model[0].model);
                 curve(model, model[0].model.name(), colour, dashed)
             });
-            panel(heading(table[0].waves, table[0].speed_mm_s), models.collect())
+            panel(full_heading(table[0], about), table[0].given, models.collect())
         });
         compared.collect()
     };
     Figure {
         caption:
-            "Friction coefficient over contact area fraction, averaged over the realisations; \
+            "Friction coefficient over contact area fraction or mean pressure, averaged over the realisations; \
                   bands are 95 % confidence intervals of the mean, pale points single realisations."
                 .into(),
         panels,
     }
 }
 
+/// The axis of what friction is given for.
+pub(super) fn axis(given: Given, values: impl Iterator<Item = f64>) -> Axis {
+    let label = match given {
+        Given::Area => AREA,
+        Given::Pressure => PRESSURE,
+    };
+    let (least, most) = values
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    // Pressures of testers and tyres are decades apart now and then; areas are drawn as in the thesis.
+    if given == Given::Pressure && most > 10.0 * least {
+        Axis::logarithmic(label)
+    } else {
+        Axis::from_zero(label)
+    }
+}
+
+/// What friction is given for.
+pub(super) fn abscissa(row: &FrictionRow) -> f64 {
+    abscissa_of(row.given, row.contact_area_fraction, row.pressure_mpa)
+}
+
+/// Contact area fraction or pressure in MPa.
+pub(super) fn abscissa_of(given: Given, area: f64, pressure_mpa: f64) -> f64 {
+    match given {
+        Given::Area => area,
+        Given::Pressure => pressure_mpa,
+    }
+}
+
 /// Average, band and realisations of one table.
-fn curve(rows: &[&FrictionRow], name: &str, colour: Colour, dashed: bool) -> Vec<Series> {
+pub(super) fn curve(
+    rows: &[&FrictionRow],
+    name: &str,
+    colour: Colour,
+    dashed: bool,
+) -> Vec<Series> {
     let count = rows[0].realisations.len();
-    let average = rows.iter().map(|row| (row.contact_area_fraction, row.mean)).collect();
+    let average = rows.iter().map(|row| (abscissa(row), row.mean)).collect();
     let band: Vec<_> = rows
         .iter()
         .filter_map(|row| {
             let half = row.confidence_95?;
-            Some((row.contact_area_fraction, (row.mean - half).max(0.0), row.mean + half))
+            Some((abscissa(row), (row.mean - half).max(0.0), row.mean + half))
         })
         .collect();
     let mut series = vec![];
+    // A line of one point is not seen.
+    let single = rows.len() == 1;
     if !band.is_empty() {
-        series.push(Series::unnamed(colour, Mark::Band(band)));
+        let mark = if single { Mark::ErrorBars(band) } else { Mark::Band(band) };
+        series.push(Series::unnamed(colour, mark));
     }
     let label = match (rows[0].half_space_realisations, count) {
         (Some(half_space), pairs) => {
@@ -74,12 +126,16 @@ fn curve(rows: &[&FrictionRow], name: &str, colour: Colour, dashed: bool) -> Vec
         (None, 0 | 1) => format!("{name}, 1 surface"),
         (None, count) => format!("{name}, mean of {count}, 95 %"),
     };
-    let mark = if dashed { Mark::Dashed(average) } else { Mark::Line(average) };
+    let mark = match (single, dashed) {
+        (true, _) => Mark::FilledCircles(average),
+        (false, true) => Mark::Dashed(average),
+        (false, false) => Mark::Line(average),
+    };
     series.push(Series::new(label, colour, mark));
     if count > 1 {
-        let points = rows.iter().flat_map(|row| {
-            row.realisations.iter().map(|friction| (row.contact_area_fraction, *friction))
-        });
+        let points = rows
+            .iter()
+            .flat_map(|row| row.realisations.iter().map(|friction| (abscissa(row), *friction)));
         series.push(Series::unnamed(colour, Mark::Dots(points.collect())));
     }
     series
@@ -116,7 +172,7 @@ pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
             title: format!(
                 "{}: {}",
                 rows[0].published_table,
-                heading(rows[0].waves, rows[0].speed_mm_s)
+                heading(SurfaceKind::sines(rows[0].waves), rows[0].speed_mm_s)
             ),
             x: Axis::from_zero(AREA),
             y: Axis::from_zero(FRICTION_LABEL),
@@ -143,20 +199,29 @@ pub(super) fn comparison(run: &RunView) -> Result<Option<Figure>, ReportError> {
 mod tests {
     use super::*;
 
+    fn about() -> About {
+        About { rubber: "x".into(), temperature_c: None, tolerance: None }
+    }
+
     fn row(model: Model, speed_mm_s: f64) -> FrictionRow {
         FrictionRow {
             model,
-            waves: 8,
+            kind: SurfaceKind::sines(8),
             speed_mm_s,
+            given: Given::Area,
             contact_area_fraction: 0.05,
+            shortest_wavelength_mm: 0.06,
+            windows: 9,
             realisations: vec![],
             half_space_realisations: None,
             mean: 0.6,
             standard_deviation: None,
             confidence_95: None,
+            scan_error: None,
             interpolation_error: 0.0,
             discretisation_error: None,
             left_out_error: 0.0,
+            microscale_error: None,
             model_error: None,
             error_estimate: None,
             pressure_mpa: 0.3,
@@ -167,13 +232,19 @@ mod tests {
     #[test]
     fn models_are_compared_at_each_speed_and_speeds_of_one_model_in_one_panel() {
         let titles = |rows: &[FrictionRow]| -> Vec<String> {
-            friction_figure(rows).panels.into_iter().map(|panel| panel.title).collect()
+            friction_figure(rows, &about()).panels.into_iter().map(|panel| panel.title).collect()
         };
         let one = [row(Model::Bem, 10.0), row(Model::Bem, 50.0)];
-        assert_eq!(titles(&one), ["Model bem"]);
-        assert_eq!(titles(&one[..1]), ["8 waves, 10 mm/s"]);
+        assert_eq!(titles(&one), ["Model bem, rubber x"]);
+        assert_eq!(titles(&one[..1]), ["8 waves from 0.06000 mm, 10 mm/s, rubber x"]);
         let two = [one.as_slice(), &[row(Model::Hybrid, 10.0), row(Model::Hybrid, 50.0)]].concat();
-        assert_eq!(titles(&two), ["8 waves, 10 mm/s", "8 waves, 50 mm/s"]);
+        assert_eq!(
+            titles(&two),
+            [
+                "8 waves from 0.06000 mm, 10 mm/s, rubber x",
+                "8 waves from 0.06000 mm, 50 mm/s, rubber x"
+            ]
+        );
         assert!(titles(&[]).is_empty());
     }
 }

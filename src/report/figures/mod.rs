@@ -3,40 +3,50 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `accuracy` | what accuracy costs, and what the error is made of |
+//! | `budget` | what the error of friction is made of |
 //! | `contact` | contact area over pressure |
 //! | `correction` | the correction of the half-space by the microscale |
 //! | `fields` | pressure and deformation along a surface |
 //! | `friction` | friction over contact area |
+//! | `methods` | friction of one road under the surfaces that stand for it |
 //! | `roughness` | correlation and spectrum of the scans |
 //! | `rubber` | the master curve of the rubber of a run |
 //! | `rubber_fit` | measured and fitted moduli over frequency, and the shift factors |
 //! | `scans` | what the scans look like |
+//! | `speed` | friction over speed |
 //! | `study` | friction and contact area of the study of one sine wave |
 //! | `waves` | the superposed sines |
 
 mod accuracy;
+mod budget;
 mod contact;
 mod correction;
 mod fields;
 mod friction;
+mod methods;
 mod roughness;
 mod rubber;
 mod rubber_fit;
 mod scans;
+mod speed;
 mod study;
 mod waves;
 
 pub use friction::friction_figure;
 pub(super) use rubber::{Material, material};
 pub use rubber_fit::rubber_fit_figure;
+pub use speed::speed_figure;
 pub use study::study_figure;
 pub(super) use waves::microscale_slope;
 
 use super::ReportError;
+use super::tables::{About, significant};
 use crate::artifact::RunView;
 use crate::plot::Figure;
 use crate::stages;
 use crate::stages::Stage;
+use crate::stages::realise::SurfaceKind;
+use crate::stages::tables::FrictionRow;
 
 /// A kind of figure.
 #[derive(Debug)]
@@ -53,7 +63,7 @@ pub struct Kind {
 }
 
 /// All kinds of figures, in the order of the data.
-pub static ALL: [Kind; 14] = [
+pub static ALL: [Kind; 17] = [
     Kind {
         name: "scans",
         shows: "heights of some windows over their length",
@@ -95,6 +105,27 @@ pub static ALL: [Kind; 14] = [
         requires: "the stage tables",
         stages: &[stages::tables::STAGE],
         make: friction::friction,
+    },
+    Kind {
+        name: "methods",
+        shows: "friction of the same road under all surfaces that stand for it, with the ratio to the measured profiles",
+        requires: "measured profiles and other surfaces, key realise.methods",
+        stages: &[stages::tables::STAGE],
+        make: methods::methods,
+    },
+    Kind {
+        name: "speed",
+        shows: "friction over sliding speed, of sweeps a line for each case",
+        requires: "two or more speeds, key bem.speeds_mm_s",
+        stages: &[stages::tables::STAGE],
+        make: speed::speed,
+    },
+    Kind {
+        name: "budget",
+        shows: "what the error of friction is made of, over contact area or pressure",
+        requires: "the stage tables",
+        stages: &[stages::tables::STAGE],
+        make: budget::budget,
     },
     Kind {
         name: "comparison",
@@ -209,8 +240,14 @@ fn speed_key(speed_mm_s: f64) -> u64 {
 }
 
 /// What a table is of, for headings.
-fn heading(waves: u32, speed_mm_s: f64) -> String {
-    format!("{waves} waves, {speed_mm_s} mm/s")
+fn heading(kind: SurfaceKind, speed_mm_s: f64) -> String {
+    format!("{kind}, {speed_mm_s} mm/s")
+}
+
+/// The same with the shortest wavelength and the rubber, without which friction is no number.
+fn full_heading(row: &FrictionRow, about: &About) -> String {
+    let shortest = significant(row.shortest_wavelength_mm);
+    format!("{} from {shortest} mm, {} mm/s, {}", row.kind, row.speed_mm_s, about.material())
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ fn sample_table(samples: &[SampleRow]) -> Markup {
     table(
         "Samples of the microscale",
         &[
-            "waves",
+            "surfaces",
             "realisation",
             "speed / (mm/s)",
             "pressure / MPa",
@@ -97,7 +97,7 @@ fn sample_table(samples: &[SampleRow]) -> Markup {
             let realisation =
                 if row.realisation == 0 { "all".into() } else { row.realisation.to_string() };
             vec![
-                row.waves.to_string(),
+                row.kind.to_string(),
                 realisation,
                 row.speed_mm_s.to_string(),
                 number(row.pressure_mpa, 4),

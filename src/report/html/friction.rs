@@ -7,9 +7,10 @@ use crate::report::read::rows;
 use crate::report::tables::{About, FrictionTable, friction_tables};
 use crate::stages;
 use crate::stages::Stage;
-use crate::stages::bem::{REALISATIONS, RealisationsRow, SOLVES};
+use crate::stages::bem::{Given, REALISATIONS, RealisationsRow, SOLVES};
 use crate::stages::tables::{
-    COMPARISON, ComparisonRow, FRICTION, FrictionRow, MODELS, Model, ModelRow,
+    BUDGET, BudgetRow, COMPARISON, ComparisonRow, FRICTION, FrictionRow, METHODS, MODELS,
+    MethodRow, Model, ModelRow,
 };
 use maud::{Markup, html};
 
@@ -26,10 +27,14 @@ impl Report<'_> {
             return Ok(absent(NO_TABLES));
         }
         let models = rows(self.run, MODELS)?.unwrap_or_default();
+        let methods = rows(self.run, METHODS)?.unwrap_or_default();
         Ok(html! {
             (self.warnings(&[stages::tables::STAGE])?)
             p { "Models: " (models_in_words(&all)) "." }
             (self.figure("friction")?)
+            (self.figure("methods")?)
+            @if !methods.is_empty() { (method_table(&methods)) }
+            (self.figure("speed")?)
             (self.figure("area")?)
             @if !models.is_empty() { (model_table(&models)) }
             (self.figure("comparison")?)
@@ -56,6 +61,7 @@ impl Report<'_> {
         let solves = rows(self.run, SOLVES)?.unwrap_or_default();
         let realisations = rows(self.run, REALISATIONS)?.unwrap_or_default();
         let friction = self.friction_rows()?;
+        let budget = rows(self.run, BUDGET)?.unwrap_or_default();
         let tolerance = self.tolerance()?;
         Ok(html! {
             (self.warnings(&[stages::bem::STAGE, stages::multilevel::STAGE])?)
@@ -64,6 +70,8 @@ impl Report<'_> {
                 None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated nevertheless." }
             } }
             (self.seconds()?)
+            (self.figure("budget")?)
+            @if !budget.is_empty() { (budget_table(&budget)) }
             (self.figure("accuracy")?)
             @if !friction.is_empty() { (error_table(&friction)) }
             @if !solves.is_empty() {
@@ -120,7 +128,10 @@ fn friction_table(one: &FrictionTable, about: &About) -> Markup {
     let count = one.rows.iter().map(|row| row.realisations.len()).max().unwrap_or(0);
     // Single values of more realisations than this fill pages; they are in the exported tables.
     let shown = if count <= 10 { count } else { 0 };
-    let mut header: Vec<String> = vec!["Ac/A0".into(), "pressure / MPa".into()];
+    let mut header: Vec<String> = match one.given {
+        Given::Area => vec!["Ac/A0".into(), "pressure / MPa".into()],
+        Given::Pressure => vec!["pressure / MPa".into(), "Ac/A0".into()],
+    };
     header.extend((1..=shown).map(|k| format!("µ {k}")));
     header
         .extend(["mean µ", "standard deviation", "± 95 %", "error, all parts"].map(str::to_owned));
@@ -130,8 +141,7 @@ fn friction_table(one: &FrictionTable, about: &About) -> Markup {
         &header,
         1,
         one.rows.iter().map(|row| {
-            let mut cells =
-                vec![row.contact_area_fraction.to_string(), number(row.pressure_mpa, 3)];
+            let mut cells = one.conditions(row).to_vec();
             cells.extend((0..shown).map(|k| optional(row.realisations.get(k).copied(), 4)));
             cells.push(number(row.mean, 4));
             let errors = [row.standard_deviation, row.confidence_95, row.error_estimate];
@@ -168,7 +178,7 @@ fn model_table(models: &[ModelRow]) -> Markup {
         &[
             "model",
             "reference",
-            "waves",
+            "surfaces",
             "speed / (mm/s)",
             "Ac/A0 from",
             "to",
@@ -182,7 +192,7 @@ fn model_table(models: &[ModelRow]) -> Markup {
             vec![
                 row.model.to_string(),
                 row.reference.to_string(),
-                row.waves.to_string(),
+                row.kind.to_string(),
                 row.speed_mm_s.to_string(),
                 row.from_area_fraction.to_string(),
                 row.to_area_fraction.to_string(),
@@ -195,19 +205,86 @@ fn model_table(models: &[ModelRow]) -> Markup {
     )
 }
 
+fn method_table(methods: &[MethodRow]) -> Markup {
+    table(
+        "Friction of the same road under the surfaces that stand for it",
+        &[
+            "model",
+            "surfaces",
+            "speed / (mm/s)",
+            "Ac/A0",
+            "pressure / MPa",
+            "realisations",
+            "mean µ",
+            "over measured",
+            "± 95 %",
+        ],
+        2,
+        methods.iter().map(|row| {
+            vec![
+                row.model.to_string(),
+                row.kind.to_string(),
+                row.speed_mm_s.to_string(),
+                number(row.contact_area_fraction, 4),
+                number(row.pressure_mpa, 4),
+                row.realisations.to_string(),
+                number(row.mean, 4),
+                number(row.ratio_to_measured, 3),
+                optional(row.ratio_confidence_95, 2),
+            ]
+        }),
+    )
+}
+
+/// The two largest parts of every average.
+fn budget_table(budget: &[BudgetRow]) -> Markup {
+    table(
+        "The largest parts of the error of the averaged friction, and what would reduce them; the others are in \
+         tables/budget.arrow",
+        &[
+            "model",
+            "surfaces",
+            "speed / (mm/s)",
+            "Ac/A0",
+            "pressure / MPa",
+            "part",
+            "error",
+            "relative",
+            "what would reduce it",
+        ],
+        2,
+        budget.iter().filter(|row| row.rank <= 2).map(|row| {
+            vec![
+                row.model.to_string(),
+                row.kind.to_string(),
+                row.speed_mm_s.to_string(),
+                number(row.contact_area_fraction, 4),
+                number(row.pressure_mpa, 4),
+                row.part.name().to_owned(),
+                optional(row.error, 2),
+                row.relative_error.map_or_else(|| "not known".into(), percent),
+                row.remedy.clone(),
+            ]
+        }),
+    )
+}
+
 fn error_table(rows: &[FrictionRow]) -> Markup {
     table(
         "Estimated errors of the averaged friction by part, absolute",
         &[
             "model",
-            "waves",
+            "surfaces",
             "speed / (mm/s)",
             "Ac/A0",
+            "pressure / MPa",
             "mean µ",
             "realisations (95 %)",
+            "scans",
             "interpolation",
             "grid",
             "waves left out",
+            "stretches",
             "model",
             "sum",
             "sum, relative",
@@ -216,14 +293,17 @@ fn error_table(rows: &[FrictionRow]) -> Markup {
         rows.iter().map(|row| {
             vec![
                 row.model.to_string(),
-                row.waves.to_string(),
+                row.kind.to_string(),
                 row.speed_mm_s.to_string(),
-                row.contact_area_fraction.to_string(),
+                number(row.contact_area_fraction, 4),
+                number(row.pressure_mpa, 4),
                 number(row.mean, 4),
                 optional(row.confidence_95, 2),
+                optional(row.scan_error, 2),
                 number(row.interpolation_error, 2),
                 optional(row.discretisation_error, 2),
                 number(row.left_out_error, 2),
+                optional(row.microscale_error, 2),
                 optional(row.model_error, 2),
                 optional(row.error_estimate, 2),
                 row.error_estimate.map_or_else(|| "–".into(), |error| percent(error / row.mean)),
@@ -236,7 +316,7 @@ fn realisation_table(rows: &[RealisationsRow]) -> Markup {
     table(
         "Number of realisations in the averages",
         &[
-            "waves",
+            "surfaces",
             "speed / (mm/s)",
             "realisations",
             "with all waves",
@@ -246,7 +326,7 @@ fn realisation_table(rows: &[RealisationsRow]) -> Markup {
         rows.iter().map(|row| {
             let left_out = row.left_out_wavelengths_mm.iter().map(|mm| number(*mm, 4));
             vec![
-                row.waves.to_string(),
+                row.kind.to_string(),
                 row.speed_mm_s.to_string(),
                 row.realisations.to_string(),
                 row.with_all_waves.to_string(),

@@ -16,7 +16,9 @@ use crate::surface::ladder::{Ladder, Undetermined};
 use crate::surface::sine_fit::{FitRule, SineFit, SineFitError, fit_sines_by};
 use crate::units::Units;
 use rayon::prelude::*;
-pub use rows::{FITS, FITTED, FitRow, FittedRow, ScaleRow, WAVES, schemas};
+pub use rows::{
+    FITS, FITTED, FitRow, FittedRow, REPLICATES, ReplicateRow, ScaleRow, WAVES, schemas,
+};
 use rows::{fit_row, fitted_rows, scale_rows};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,7 +26,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -167,6 +169,7 @@ pub fn run(
     let reliable = length_in(&metadata, RELIABLE_KEY)?.unwrap_or(0.0).mm_to_m();
     let correlations = Correlations::of(rows, parameters.longest_lag_mm, window_length);
     let (mut scales, mut fits, mut fitted, mut warnings) = (vec![], vec![], vec![], vec![]);
+    let mut replicates = Vec::new();
     for &waves in &parameters.waves {
         context.check_interrupt()?;
         let in_this = |source| StageError::SineFit { waves, source };
@@ -181,6 +184,7 @@ pub fn run(
         let rule = parameters.rule;
         let fit = fit_sines_by(rule, &correlations.average, &wavelengths).map_err(in_this)?;
         let intervals = correlations.jackknife(rule, &fit, &wavelengths).map_err(in_this)?;
+        replicates.extend(correlations.replicates(rule, waves, &wavelengths).map_err(in_this)?);
         let beyond: Vec<String> = beyond.iter().map(ToString::to_string).collect();
         warnings.extend(beyond.iter().map(|warning| format!("{waves} waves: {warning}")));
         warnings.extend(finer_than(waves, spacing, wavelengths[0]));
@@ -204,10 +208,15 @@ pub fn run(
         ])
         .collect();
     context.pending.write_table(WAVES, &scales, &metadata)?;
+    context.pending.write_rows(REPLICATES, &replicates)?;
     context.pending.write_table(FITS, &fits, &metadata)?;
     context.pending.write_table(FITTED, &fitted, &metadata)?;
     Ok(warnings)
 }
+
+/// Groups of windows that are left out in turn, for the error of friction by the choice of scans: enough for an interval,
+/// and few enough to be solved.
+const GROUPS: usize = 6;
 
 /// Lags below this share of the shortest wave tell of roughness that no wave stands for.
 const SHORTEST_LAG: f64 = 1.0 / 16.0;
@@ -304,7 +313,8 @@ impl Correlations {
         let replicates: Vec<Vec<f64>> = (0..n)
             .into_par_iter()
             .map(|left_out| {
-                let fit = fit_sines_by(rule, &self.without(left_out), wavelengths)?;
+                let without = self.without(left_out..left_out + 1);
+                let fit = fit_sines_by(rule, &without, wavelengths)?;
                 Ok(fit.sine_scales().iter().map(|scale| scale.amplitude).collect())
             })
             .collect::<Result<_, _>>()?;
@@ -313,15 +323,49 @@ impl Correlations {
         Ok((0..fit.scales.len()).map(|i| Some(half_width(i))).collect())
     }
 
-    /// The average without one window: its sums are taken off those of all.
-    fn without(&self, left_out: usize) -> Vec<CorrelationSample> {
-        let gone = &self.windows[left_out];
-        let of_lag = |lag: f64| gone.iter().find(|sample| sample.lag == lag);
+    /// The fits without each of a few groups of windows; none of a single window. Neighbouring windows, which are of one
+    /// scan, are left out together.
+    fn replicates(
+        &self,
+        rule: FitRule,
+        waves: u32,
+        wavelengths: &[f64],
+    ) -> Result<Vec<ReplicateRow>, SineFitError> {
+        let count = self.windows.len();
+        let groups = count.min(GROUPS);
+        if groups < 2 {
+            return Ok(Vec::new());
+        }
+        let fits: Vec<Vec<ReplicateRow>> = (0..groups)
+            .into_par_iter()
+            .map(|group| {
+                let own = group * count / groups..(group + 1) * count / groups;
+                let fit = fit_sines_by(rule, &self.without(own), wavelengths)?;
+                let row = |(number, scale): (u32, SineScale)| ReplicateRow {
+                    waves,
+                    group: group as u32 + 1,
+                    scale: number,
+                    amplitude_mm: scale.amplitude.m_to_mm(),
+                };
+                Ok((1..).zip(fit.sine_scales()).map(row).collect())
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(fits.concat())
+    }
+
+    /// The average without some windows: their sums are taken off those of all.
+    fn without(&self, left_out: std::ops::Range<usize>) -> Vec<CorrelationSample> {
         let rest = |sample: &CorrelationSample| {
-            let Some(gone) = of_lag(sample.lag) else { return Some(*sample) };
-            let pairs = sample.pairs.checked_sub(gone.pairs).filter(|pairs| *pairs > 0)?;
-            let sum = sample.value * sample.pairs as f64 - gone.value * gone.pairs as f64;
-            Some(CorrelationSample { lag: sample.lag, value: sum / pairs as f64, pairs })
+            let of_lag = |window: &Vec<CorrelationSample>| {
+                window.iter().find(|other| other.lag == sample.lag).copied()
+            };
+            let (mut pairs, mut sum) = (sample.pairs, sample.value * sample.pairs as f64);
+            for gone in self.windows[left_out.clone()].iter().filter_map(of_lag) {
+                pairs = pairs.checked_sub(gone.pairs)?;
+                sum -= gone.value * gone.pairs as f64;
+            }
+            let (lag, value) = (sample.lag, sum / pairs as f64);
+            (pairs > 0).then_some(CorrelationSample { lag, value, pairs })
         };
         self.average.iter().filter_map(rest).collect()
     }

@@ -41,6 +41,28 @@ impl Row for ScaleRow {
     const VERSION: u32 = 1;
 }
 
+/// The amplitudes of the fits without each group of windows: `replicates.arrow`.
+pub const REPLICATES: Table<ReplicateRow> = Table::new("approximate", "replicates.arrow");
+
+/// One sine of a fit to the scans without one group of windows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ReplicateRow {
+    /// Number of waves asked for.
+    pub waves: u32,
+    /// Number of the group that is left out, from 1.
+    pub group: u32,
+    /// Number of this wave, from the shortest, starting at 1.
+    pub scale: u32,
+    /// Amplitude, not negative.
+    #[schemars(extend("unit" = "mm"))]
+    pub amplitude_mm: f64,
+}
+
+impl Row for ReplicateRow {
+    const SCHEMA: &'static str = "asperity.approximate.replicates";
+    const VERSION: u32 = 1;
+}
+
 /// How good a fit is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FitRow {
@@ -105,7 +127,7 @@ impl Row for FittedRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![WAVES.schema(), FITS.schema(), FITTED.schema()]
+    vec![WAVES.schema(), REPLICATES.schema(), FITS.schema(), FITTED.schema()]
 }
 
 pub(super) fn scale_rows(waves: u32, fit: &SineFit, intervals: &[Option<f64>]) -> Vec<ScaleRow> {

@@ -59,7 +59,7 @@ pub(crate) fn require_attainable(
         ..parameters.clone()
     };
     let work = Work::new(&trial, rubber, store, watch);
-    for of_one in surfaces.chunk_by(|a, b| a.waves == b.waves) {
+    for of_one in surfaces.chunk_by(|a, b| a.kind == b.kind) {
         let first = &of_one[..of_one.len().min(FIRST_REALISATIONS)];
         for &speed_mm_s in &parameters.speeds_mm_s {
             let curves: Vec<Vec<CurveRow>> = first
@@ -67,9 +67,9 @@ pub(crate) fn require_attainable(
                 .map(|surface| Ok(work.one_curve(surface, speed_mm_s)?.values))
                 .collect::<Result<_, StageError>>()?;
             if let Some(Verdict { needed, attainable }) = verdict(&curves, tolerance, most) {
-                let waves = of_one[0].waves;
+                let kind = of_one[0].kind;
                 return Err(StageError::TooFewRealisations {
-                    waves,
+                    kind,
                     speed_mm_s,
                     tolerance,
                     needed,
@@ -106,12 +106,15 @@ fn verdict(curves: &[Vec<CurveRow>], tolerance: f64, most: usize) -> Option<Verd
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::bem::Given;
+    use crate::stages::realise::SurfaceKind;
 
     fn curves(friction: [f64; 4], error: f64) -> Vec<Vec<CurveRow>> {
         let row = |friction_coefficient| CurveRow {
-            waves: 1,
+            kind: SurfaceKind::sines(1),
             realisation: 1,
             speed_mm_s: 1.0,
+            given: Given::Area,
             contact_area_fraction: 0.1,
             pressure_mpa: 1.0,
             friction_coefficient,

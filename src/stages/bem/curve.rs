@@ -1,6 +1,6 @@
 //! One curve of friction over contact area: one surface at one speed.
 
-use super::{Bem, SolveRow};
+use super::{Bem, Given, SolveRow};
 use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore};
 use crate::contact::curve::{CurveError, friction_curve};
 use crate::contact::refine::{
@@ -55,6 +55,9 @@ struct Grids<'a> {
     contacts: BTreeMap<usize, SlidingContact>,
 }
 
+/// Friction at what was wanted, in the order of the recipe, and the fields.
+type Computed = (Vec<(Given, CurveValue)>, Vec<FieldSolution>);
+
 /// Fields of a contact at a wanted area.
 pub(super) struct FieldSolution {
     group: String,
@@ -89,12 +92,16 @@ impl<'a> Curve<'a> {
         self.kept.finish(task)
     }
 
-    /// Friction at the wanted areas, and the fields where they are wanted.
-    pub fn compute(
-        &mut self,
-        parameters: &Bem,
-    ) -> Result<(Vec<CurveValue>, Vec<FieldSolution>), CurveError<SolveError>> {
-        let smallest = parameters.area_fractions[0];
+    /// Friction at the wanted areas, then at the wanted pressures, and the fields where they are wanted.
+    pub fn compute(&mut self, parameters: &Bem) -> Result<Computed, CurveError<SolveError>> {
+        let mut at_pressures = Vec::with_capacity(parameters.pressures_mpa.len());
+        for pressure_mpa in &parameters.pressures_mpa {
+            let point = self.point(pressure_mpa.mpa_to_pa()).map_err(CurveError::Solve)?;
+            at_pressures.push((Given::Pressure, solved(point)));
+        }
+        let Some(&smallest) = parameters.area_fractions.first() else {
+            return Ok((at_pressures, Vec::new()));
+        };
         let finest = self.base_points << MOST_REFINEMENTS;
         if self.grid_tolerance.is_none() && smallest * (finest as f64) < LEAST_CONTACT_POINTS {
             let unresolved = SolveError::Unresolved { area: smallest, points: finest };
@@ -105,6 +112,8 @@ impl<'a> Curve<'a> {
             friction_curve(targets, parameters.interpolation_tolerance(), guess, |p| this.point(p))
         };
         let values = curve(&parameters.area_fractions, self)?;
+        let mut values: Vec<_> = values.into_iter().map(|value| (Given::Area, value)).collect();
+        values.extend(at_pressures);
         if parameters.field_area_fractions.is_empty() {
             return Ok((values, Vec::new()));
         }
@@ -203,8 +212,8 @@ impl<'a> Curve<'a> {
         let row = kept.take_or(&values, || grids.solve(pressure, points))?;
         // The name of the approximation and the number of the realisation are no part of the
         // problem, so the same surface may have been solved under others.
-        let (waves, realisation) = (grids.surface.waves, grids.surface.realisation);
-        Ok(SolveRow { waves, realisation, ..row })
+        let (kind, realisation) = (grids.surface.kind, grids.surface.realisation);
+        Ok(SolveRow { kind, realisation, ..row })
     }
 
     fn field(&mut self, value: &CurveValue) -> Result<FieldSolution, SolveError> {
@@ -212,9 +221,10 @@ impl<'a> Curve<'a> {
         let grids = &mut self.grids;
         let solution = grids.contact(points)?.solve(value.mean_pressure)?;
         let area_fraction = value.contact_area_fraction;
-        let Surface { waves, realisation, .. } = grids.surface;
+        let Surface { kind, realisation, .. } = grids.surface;
         let group = format!(
-            "waves_{waves}/realisation_{realisation}/speed_{}_mm_s/area_{area_fraction}",
+            "{}/realisation_{realisation}/speed_{}_mm_s/area_{area_fraction}",
+            kind.file_name(),
             grids.speed_mm_s
         );
         Ok(FieldSolution { group, area_fraction, spacing: grids.period / points as f64, solution })
@@ -226,7 +236,7 @@ impl Grids<'_> {
         let start = Instant::now();
         let solution = self.contact(points)?.solve(pressure)?;
         Ok(SolveRow {
-            waves: self.surface.waves,
+            kind: self.surface.kind,
             realisation: self.surface.realisation,
             speed_mm_s: self.speed_mm_s,
             pressure_mpa: pressure.pa_to_mpa(),
@@ -292,6 +302,17 @@ pub(super) fn problem(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Va
     problem["profile"] = json!(surface.profile);
     problem["speed_mm_s"] = json!(speed_mm_s);
     problem
+}
+
+/// A value at a pressure that was solved itself.
+fn solved(point: CurvePoint) -> CurveValue {
+    CurveValue {
+        contact_area_fraction: point.contact_area_fraction,
+        mean_pressure: point.mean_pressure,
+        friction_coefficient: point.friction_coefficient,
+        interpolation_error: 0.0,
+        discretisation_error: point.error.map(|error| error.friction_coefficient),
+    }
 }
 
 fn on_its_grid(row: &SolveRow) -> OnGrid {

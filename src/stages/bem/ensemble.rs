@@ -36,10 +36,13 @@ pub(super) struct Ensemble<'a> {
 }
 
 impl<'a> Ensemble<'a> {
-    /// All realisations of the surfaces, or the first ones if an accuracy of the average is asked for.
+    /// All realisations of the surfaces, or the first ones if an accuracy of the average is asked for. Of measured windows
+    /// all: which of them are left out must not depend on their order.
     pub fn new(surfaces: &'a [Surface], speed_mm_s: f64, tolerance: Option<f64>) -> Self {
         let all = surfaces.len();
-        let wanted = if tolerance.is_some() { all.min(FIRST_REALISATIONS) } else { all };
+        let measured = surfaces.first().is_some_and(|surface| surface.kind.method.is_measured());
+        let wanted =
+            if tolerance.is_some() && !measured { all.min(FIRST_REALISATIONS) } else { all };
         let left_out = LeftOut::default();
         Self { speed_mm_s, surfaces, results: Vec::new(), wanted, with_all_waves: all, left_out }
     }
@@ -98,15 +101,18 @@ pub(crate) fn realisations_needed(curves: &[&[CurveRow]], tolerance: f64) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::bem::Given;
+    use crate::stages::realise::SurfaceKind;
     use crate::surface::SineScale;
     use crate::surface::realisation::random_phases;
     use std::f64::consts::TAU;
 
     fn row(friction_coefficient: f64, interpolation_error: f64) -> CurveRow {
         CurveRow {
-            waves: 1,
+            kind: SurfaceKind::sines(1),
             realisation: 1,
             speed_mm_s: 1.0,
+            given: Given::Area,
             contact_area_fraction: 0.1,
             pressure_mpa: 1.0,
             friction_coefficient,
@@ -146,7 +152,8 @@ mod tests {
                 2.0 * ((waves[1].phase - waves[0].phase) / TAU).rem_euclid(1.0).powi(2)
             };
             let mut count = FIRST_REALISATIONS;
-            let surface = Surface { waves: 1, realisation: 1, profile: Vec::new() };
+            let surface =
+                Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: Vec::new() };
             let surfaces = vec![surface; 5000];
             let mut ensemble = Ensemble::new(&surfaces, 1.0, Some(0.1));
             loop {

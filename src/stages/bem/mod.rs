@@ -7,7 +7,10 @@
 //! | `ensemble` | the curves of one approximation at one speed, of as many realisations as their average needs |
 //! | `reduction` | waves that matter less than the accuracy that is asked for are left out, and what that changes is bounded |
 //! | `rows` | what the stage writes |
+//! | `scans` | what the choice of scans does to friction of sines |
+//! | `speeds` | sliding speeds of a recipe: a list, or a range |
 //! | `task` | one curve as a task of a sweep, which any machine can solve |
+//! | `wanted` | what friction is wanted at: contact areas, pressures |
 //! | `work` | the curves of all ensembles: those that are missing, solved side by side |
 
 mod attainable;
@@ -15,7 +18,10 @@ mod curve;
 mod ensemble;
 mod reduction;
 mod rows;
+mod scans;
+mod speeds;
 mod task;
+mod wanted;
 mod work;
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
@@ -34,15 +40,17 @@ pub use rows::{
     CURVES, CurveRow, FIELDS, REALISATIONS, RealisationsRow, SOLVES, SolveRow, fields_schema,
     schemas,
 };
+pub use scans::{Replicate, SCAN_ERRORS, ScanErrorRow, replicates};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 pub use task::Task;
+pub use wanted::{Given, Wanted};
 use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -61,7 +69,13 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(bem, material, &inputs.results, &inputs.store()?, context)
     };
-    Some(Planned::new(bem.resolved(material), run).reading(super::realise::SURFACES))
+    let chain = request.chain()?;
+    let scans = chain.ingest.is_some() && bem.estimate_scan_error;
+    Some(
+        Planned::new(bem.resolved(material), run)
+            .reading(super::realise::SURFACES)
+            .reading_if(scans, super::approximate::REPLICATES),
+    )
 }
 
 const SPEEDS: &str = "one speed or more from 1e-9 to 1e9 mm/s, without repeats";
@@ -78,11 +92,17 @@ pub struct Bem {
     /// Not set: the moduli as they stand in the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature_c: Option<f64>,
-    /// Sliding speeds in mm/s.
+    /// Sliding speeds in mm/s: a list, or a range such as `{ from = 0.001, to = 10000, per_decade = 3 }`.
+    #[serde(deserialize_with = "speeds::deserialize")]
+    #[schemars(with = "speeds::Speeds")]
     pub speeds_mm_s: Vec<f64>,
-    /// Contact area fractions at which friction is wanted, ascending.
+    /// Contact area fractions at which friction is wanted, ascending; empty where pressures are given in their place.
     #[serde(default = "published_area_fractions")]
     pub area_fractions: Vec<f64>,
+    /// Mean pressures in MPa at which friction is wanted, ascending, beside or in place of contact areas: the load over
+    /// the area that it is spread on, which a friction tester knows.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pressures_mpa: Vec<f64>,
     /// Relative accuracy of friction by interpolation between solved pressures; 1e-3 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
@@ -103,10 +123,24 @@ pub struct Bem {
     /// as many: small contacts are a few points on a grid that suits large ones.
     #[serde(default = "default_contact_points")]
     pub fewest_contact_points: u32,
+    /// Whether sines are solved with the amplitudes of parts of the scans too, for the error of friction by the choice of
+    /// scans: twelve curves more for each number of waves and speed.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub estimate_scan_error: bool,
     /// Contact area fractions at which pressure and separation are kept as fields; none by
     /// default.
     #[serde(default)]
     pub field_area_fractions: Vec<f64>,
+}
+
+fn yes() -> bool {
+    true
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_yes(flag: &bool) -> bool {
+    *flag
 }
 
 fn is_no_path(path: &Path) -> bool {
@@ -135,30 +169,7 @@ impl Bem {
         let possible = speeds.iter().all(|v| SPEEDS_MM_S.contains(v));
         let valid = !speeds.is_empty() && possible && no_repeats(speeds);
         require(valid, "bem.speeds_mm_s", speeds, SPEEDS)?;
-        for (key, areas) in [
-            ("bem.area_fractions", &self.area_fractions),
-            ("bem.field_area_fractions", &self.field_area_fractions),
-        ] {
-            let ascending = areas.windows(2).all(|w| w[0] < w[1]);
-            let inside = areas.iter().all(|a| *a > 0.0 && *a < 1.0);
-            require(ascending && inside, key, areas, "ascending, between 0 and 1 (5 % is 0.05)")?;
-        }
-        let areas = &self.area_fractions;
-        require(
-            !areas.is_empty(),
-            "bem.area_fractions",
-            areas,
-            "at least one fraction, such as [0.05]",
-        )?;
-        let range = areas[0]..=areas[areas.len() - 1];
-        let fields = &self.field_area_fractions;
-        let within = fields.iter().all(|a| range.contains(a));
-        require(
-            within,
-            "bem.field_area_fractions",
-            fields,
-            "within the range of bem.area_fractions",
-        )?;
+        self.check_wanted()?;
         let tolerances = [
             ("bem.tolerance", Some(self.interpolation_tolerance())),
             ("bem.grid_tolerance", self.grid_tolerance),
@@ -226,8 +237,11 @@ pub fn run(
     let surfaces = read_surfaces(run)?;
     require_for_all(parameters, &material.rubber, &surfaces, store, context.watch)?;
     let mut ensembles = ensembles(parameters, &surfaces);
-    Work::new(parameters, &material.rubber, store, context.watch).solve_all(&mut ensembles)?;
+    let work = Work::new(parameters, &material.rubber, store, context.watch);
+    work.solve_all(&mut ensembles)?;
     write(&mut context.pending, &ensembles)?;
+    let replicates = replicates(parameters, &surfaces, run)?;
+    context.pending.write_rows(SCAN_ERRORS, &scans::errors(parameters, &replicates, &work)?)?;
     let mut warnings = material.oddities();
     warnings.extend(material.extrapolations(excited(parameters, &surfaces)));
     Ok(warnings)
@@ -242,12 +256,15 @@ pub fn missing(
     parameters: &Bem,
     rubber: &Rubber,
     surfaces: &[Surface],
+    replicates: &[Replicate],
     store: &SolveStore,
     watch: Watch,
 ) -> Result<Vec<Task>, StageError> {
     require_for_all(parameters, rubber, surfaces, store, watch)?;
     let mut ensembles = ensembles(parameters, surfaces);
-    Work::new(parameters, rubber, store, watch).missing(&mut ensembles)
+    let mut missing = Work::new(parameters, rubber, store, watch).missing(&mut ensembles)?;
+    missing.extend(scans::missing(parameters, rubber, replicates, store)?);
+    Ok(missing)
 }
 
 /// [`require_attainable`] of the realisations that there are of every approximation.
@@ -258,8 +275,11 @@ fn require_for_all(
     store: &SolveStore,
     watch: Watch,
 ) -> Result<(), StageError> {
-    let of_each = surfaces.chunk_by(|a, b| a.waves == b.waves);
-    for of_one in of_each.filter(|of_one| of_one.len() > FIRST_REALISATIONS) {
+    let of_each = surfaces.chunk_by(|a, b| a.kind == b.kind);
+    let drawn = |of_one: &&[Surface]| {
+        of_one.len() > FIRST_REALISATIONS && !of_one[0].kind.method.is_measured()
+    };
+    for of_one in of_each.filter(drawn) {
         require_attainable(parameters, rubber, of_one, of_one.len(), store, watch)?;
     }
     Ok(())
@@ -268,7 +288,7 @@ fn require_for_all(
 fn ensembles<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Ensemble<'a>> {
     let tolerance = parameters.average_tolerance;
     surfaces
-        .chunk_by(|a, b| a.waves == b.waves)
+        .chunk_by(|a, b| a.kind == b.kind)
         .flat_map(|of_one| {
             let speeds = parameters.speeds_mm_s.iter();
             speeds.map(move |speed| Ensemble::new(of_one, *speed, tolerance))
@@ -312,7 +332,7 @@ fn realisations_row(ensemble: &Ensemble) -> Option<RealisationsRow> {
     let left_out =
         ensemble.left_out.wavelengths(surface).iter().map(|metre| metre.m_to_mm()).collect();
     Some(RealisationsRow {
-        waves: surface.waves,
+        kind: surface.kind,
         speed_mm_s: ensemble.speed_mm_s,
         realisations: ensemble.results.len() as u32,
         with_all_waves: ensemble.with_all_waves.min(ensemble.results.len()) as u32,

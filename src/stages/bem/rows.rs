@@ -1,28 +1,31 @@
 //! What the stage writes.
 
+use super::Given;
 use crate::artifact::{
     ArrayFile, ArraysSchema, AttributeSchema, DatasetSchema, ResultFile, Row, SchemaVersion, Table,
 };
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// All solves, of the waves that were not left out: `solves.arrow`.
 pub const SOLVES: Table<SolveRow> = Table::new("bem", "solves.arrow");
-/// Friction at the wanted contact areas: `curves.arrow`.
+/// Friction at the wanted contact areas and pressures: `curves.arrow`.
 pub const CURVES: Table<CurveRow> = Table::new("bem", "curves.arrow");
 /// Pressure and separation on request: `fields.h5`.
 pub const FIELDS: ArrayFile = ArrayFile {
     file: ResultFile { stage: "bem", name: "fields.h5" },
     schema: "asperity.bem.fields",
-    version: 1,
+    version: 2,
     description: "pressure and separation over one period of the profile",
 };
 
 /// One solved contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolveRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
@@ -62,26 +65,29 @@ pub struct SolveRow {
 
 impl Row for SolveRow {
     const SCHEMA: &'static str = "asperity.bem.solves";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
-/// Friction of one realisation at one wanted contact area.
+/// Friction of one realisation at one wanted contact area or pressure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurveRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
+    /// What the value is for: a contact area fraction or a mean pressure.
+    pub given: Given,
     /// Contact area fraction.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
-    /// Mean pressure, interpolated.
+    /// Mean pressure; interpolated where the area is given.
     #[schemars(extend("unit" = "MPa"))]
     pub pressure_mpa: f64,
-    /// Friction coefficient, interpolated.
+    /// Friction coefficient; interpolated where the area is given.
     #[schemars(extend("unit" = "1"))]
     pub friction_coefficient: f64,
     /// Estimated error of the friction coefficient by interpolation, absolute.
@@ -99,7 +105,7 @@ pub struct CurveRow {
 
 impl Row for CurveRow {
     const SCHEMA: &'static str = "asperity.bem.curves";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
 }
 
 /// How many realisations were solved, and of which waves: `realisations.arrow`.
@@ -108,8 +114,9 @@ pub const REALISATIONS: Table<RealisationsRow> = Table::new("bem", "realisations
 /// What the average of one approximation at one speed rests on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RealisationsRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
@@ -124,12 +131,18 @@ pub struct RealisationsRow {
 
 impl Row for RealisationsRow {
     const SCHEMA: &'static str = "asperity.bem.realisations";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![SOLVES.schema(), CURVES.schema(), REALISATIONS.schema(), FIELDS.schema()]
+    vec![
+        SOLVES.schema(),
+        CURVES.schema(),
+        REALISATIONS.schema(),
+        super::SCAN_ERRORS.schema(),
+        FIELDS.schema(),
+    ]
 }
 
 /// What [`FIELDS`] holds.
@@ -155,12 +168,12 @@ pub fn fields_schema() -> ArraysSchema {
         description: FIELDS.description,
         datasets: vec![
             dataset(
-                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",
+                "{surfaces}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/pressure",
                 "Pa",
                 "contact pressure, zero outside the contact",
             ),
             dataset(
-                "waves_{waves}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/separation",
+                "{surfaces}/realisation_{realisation}/speed_{speed}_mm_s/area_{area}/separation",
                 "m",
                 "separation of rubber and profile, zero in the contact",
             ),

@@ -2,7 +2,7 @@
 
 use super::curve::{Curve, base_points, problem};
 use super::ensemble::CurveResult;
-use super::{Bem, CurveRow};
+use super::{Bem, CurveRow, Given};
 use crate::artifact::{Digest, SolveStore};
 use crate::contact::CurveValue;
 use crate::contact::curve::CurveError;
@@ -32,7 +32,7 @@ impl SolveTask for Task {
     }
 
     fn key(&self, parameters: &Bem, rubber: &Rubber) -> Digest {
-        Digest::of_value(&json!({
+        let mut key = json!({
             "stage": ["bem", super::REVISION],
             "problem": self.problem(parameters, rubber),
             "area_fractions": parameters.area_fractions,
@@ -41,7 +41,11 @@ impl SolveTask for Task {
             "points_per_shortest_wavelength": parameters.points_per_shortest_wavelength,
             "fewest_contact_points": parameters.fewest_contact_points,
             "field_area_fractions": parameters.field_area_fractions,
-        }))
+        });
+        if !parameters.pressures_mpa.is_empty() {
+            key["pressures_mpa"] = json!(parameters.pressures_mpa);
+        }
+        Digest::of_value(&key)
     }
 
     fn name(&self) -> String {
@@ -60,10 +64,11 @@ impl SolveTask for Task {
             Curve::new(parameters, rubber, surface, *speed_mm_s, store, watch.interrupted)?;
         let (values, fields) = curve.compute(parameters).map_err(|source| self.failed(source))?;
         curve.finish(&self.key(parameters, rubber))?;
-        let row = |value: &CurveValue| CurveRow {
-            waves: surface.waves,
+        let row = |(given, value): &(Given, CurveValue)| CurveRow {
+            kind: surface.kind,
             realisation: surface.realisation,
             speed_mm_s: *speed_mm_s,
+            given: *given,
             contact_area_fraction: value.contact_area_fraction,
             pressure_mpa: value.mean_pressure.pa_to_mpa(),
             friction_coefficient: value.friction_coefficient,
@@ -83,9 +88,9 @@ impl Task {
     }
 
     fn failed(&self, source: CurveError<SolveError>) -> StageError {
-        let (waves, realisation) = (self.surface.waves, self.surface.realisation);
+        let (kind, realisation) = (self.surface.kind, self.surface.realisation);
         let speed_mm_s = self.speed_mm_s;
-        let contact = |source| StageError::Contact { waves, realisation, speed_mm_s, source };
+        let contact = |source| StageError::Contact { kind, realisation, speed_mm_s, source };
         match source {
             CurveError::Solve(error) => {
                 error.in_stage(|error| contact(Box::new(CurveError::Solve(*error))))

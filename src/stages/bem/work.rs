@@ -106,8 +106,9 @@ impl<'a> Work<'a> {
     fn extend(&self, ensemble: &mut Ensemble, tolerance: f64) -> Result<(), StageError> {
         let solved = ensemble.results.len();
         ensemble.extend(tolerance);
-        // Fields show the whole surface.
-        let whole = !self.parameters.field_area_fractions.is_empty();
+        // Fields show the whole surface, and the waves of windows have no scales in common.
+        let of_windows = ensemble.surfaces.iter().any(|surface| surface.kind.method.of_a_window());
+        let whole = of_windows || !self.parameters.field_area_fractions.is_empty();
         if whole || !LeftOut::pays(solved, ensemble.wanted) {
             return Ok(());
         }

@@ -8,8 +8,10 @@ use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
 use crate::numerics::interpolation::CubicHermite;
 use crate::rubber::{Rheology, Rubber};
+use crate::stages::bem::{Given, Wanted};
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
+use crate::stages::realise::SurfaceKind;
 use crate::stages::{SolveError, Watch};
 use crate::units::Units;
 use serde_json::{Value, json};
@@ -78,12 +80,20 @@ impl<'a> Solver<'a> {
     /// Solves pressures at the ratio of the recipe, from below the smallest to above the largest
     /// area; returns why the path ended before that, if it did. A pressure without a solution may have one
     /// close by, so half the step is tried before the sweep ends.
-    pub fn sweep(&mut self, areas: &[f64], guess: f64) -> Result<Option<FemError>, SolveError> {
-        let (smallest, largest) = (areas[0], areas[areas.len() - 1]);
+    pub fn sweep(&mut self, wanted: &Wanted, guess: f64) -> Result<Option<FemError>, SolveError> {
+        let ends = |values: &[f64]| {
+            (
+                values.first().copied().unwrap_or(f64::INFINITY),
+                values.last().copied().unwrap_or(0.0),
+            )
+        };
+        let (smallest, largest) = ends(&wanted.area_fractions);
+        let (least, most) = ends(&wanted.pressures_mpa);
+        let (least, most) = (least.mpa_to_pa(), most.mpa_to_pa());
         let mut pressure = guess;
         let mut area = self.point(pressure)?.contact_area_fraction;
         let (mut lower_area, mut too_slight) = (area, None);
-        while lower_area > smallest && self.solves.len() < MOST_SOLVES {
+        while (lower_area > smallest || pressure > least) && self.solves.len() < MOST_SOLVES {
             pressure /= self.ratio;
             match self.point(pressure) {
                 Ok(row) => lower_area = row.contact_area_fraction,
@@ -97,7 +107,7 @@ impl<'a> Solver<'a> {
         }
         pressure = guess;
         let mut ended = None;
-        while area < largest && self.solves.len() < MOST_SOLVES {
+        while (area < largest || pressure < most) && self.solves.len() < MOST_SOLVES {
             let step = if ended.is_none() { self.ratio } else { self.ratio.sqrt() };
             match self.point(pressure * step) {
                 Ok(row) => {
@@ -125,10 +135,10 @@ impl<'a> Solver<'a> {
         };
         let solves: Vec<&FemSolveRow> = self.solves.iter().filter(|row| apart(row)).collect();
         let largest = solves.iter().map(|row| row.contact_area_fraction).fold(0.0, f64::max);
-        let Surface { waves, realisation, .. } = self.surface;
+        let Surface { kind, realisation, .. } = self.surface;
         (!solves.is_empty()).then(|| {
             format!(
-                "{waves} waves, realisation {realisation}, {} mm/s: friction and heat are more than 5 % \
+                "{kind}, realisation {realisation}, {} mm/s: friction and heat are more than 5 % \
                  apart in {} of {} solves, up to area {largest:.3}: more elements would tell them \
                  better (fem.columns_per_shortest_wavelength)",
                 self.speed_mm_s,
@@ -138,14 +148,15 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// Friction at the areas that lie between solved ones: friction over pressure, at the pressure of the area.
+    /// Friction at the areas and pressures that lie between solved ones: friction over pressure, at the pressure of the
+    /// area.
     ///
     /// Nodes come into contact one by one, so that the area stands still from one pressure to the next, or nearly
     /// so, and friction as a function of it would have any slope there. Friction over pressure is smooth. The pressure
     /// of an area is monotone, from the solves that add some; its error counts by the slope of friction.
-    pub fn values(&self, areas: &[f64]) -> Vec<FemCurveRow> {
-        values_at(areas, &self.solves, |row| FemCurveRow {
-            waves: self.surface.waves,
+    pub fn values(&self, wanted: &Wanted) -> Vec<FemCurveRow> {
+        values_at(wanted, &self.solves, |row| FemCurveRow {
+            kind: self.surface.kind,
             realisation: self.surface.realisation,
             speed_mm_s: self.speed_mm_s,
             ..row
@@ -153,7 +164,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The same on half the columns, where the solutions were reached from there.
-    pub fn coarser_values(&self, areas: &[f64]) -> Option<Vec<FemCurveRow>> {
+    pub fn coarser_values(&self, wanted: &Wanted) -> Option<Vec<FemCurveRow>> {
         let coarser = |row: &FemSolveRow| {
             Some(FemSolveRow {
                 friction_coefficient: row.coarser_friction_coefficient?,
@@ -162,16 +173,16 @@ impl<'a> Solver<'a> {
             })
         };
         let solves: Option<Vec<FemSolveRow>> = self.solves.iter().map(coarser).collect();
-        solves.map(|solves| values_at(areas, &solves, |row| row))
+        solves.map(|solves| values_at(wanted, &solves, |row| row))
     }
 
     fn point(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
         let Self { surface, speed_mm_s, columns, path, .. } = self;
-        let (waves, realisation) = (surface.waves, surface.realisation);
+        let (kind, realisation) = (surface.kind, surface.realisation);
         let row = path.at(pressure, |solution, seconds| {
             let coarser = solution.coarser;
             Ok(FemSolveRow {
-                waves,
+                kind,
                 realisation,
                 speed_mm_s: *speed_mm_s,
                 pressure_mpa: pressure.pa_to_mpa(),
@@ -188,7 +199,7 @@ impl<'a> Solver<'a> {
             })
         })?;
         // The same surface may have been solved under another name.
-        let row = FemSolveRow { waves, realisation, ..row };
+        let row = FemSolveRow { kind, realisation, ..row };
         self.solves.push(row.clone());
         Ok(row)
     }
@@ -206,7 +217,7 @@ impl<'a> Solver<'a> {
 
 /// [`FemCurve::values`] of solves at ascending pressures; `named` completes a row.
 fn values_at(
-    areas: &[f64],
+    wanted: &Wanted,
     solves: &[FemSolveRow],
     named: impl Fn(FemCurveRow) -> FemCurveRow,
 ) -> Vec<FemCurveRow> {
@@ -230,6 +241,7 @@ fn values_at(
     let rising_pressures = column(&rising, |row| row.pressure_mpa.ln());
     let pressure_errors = interpolation_errors(&areas_solved, &rising_pressures);
     let pressure_errors = CubicHermite::linear(log_areas.clone(), pressure_errors);
+    let area = CubicHermite::monotone(rising_pressures.clone(), log_areas.clone());
     let pressure = CubicHermite::monotone(log_areas, rising_pressures);
     let pressures = column(&touching, |row| row.pressure_mpa);
     let friction = column(&touching, |row| row.friction_coefficient);
@@ -241,9 +253,10 @@ fn values_at(
         let log_pressure = pressure.at(area.ln());
         let by_area = friction.derivative(log_pressure).abs() * pressure_errors.at(area.ln());
         named(FemCurveRow {
-            waves: 0,
+            kind: SurfaceKind::sines(0),
             realisation: 0,
             speed_mm_s: 0.0,
+            given: Given::Area,
             contact_area_fraction: *area,
             pressure_mpa: log_pressure.exp(),
             friction_coefficient: friction.at(log_pressure),
@@ -251,7 +264,24 @@ fn values_at(
             discretisation_error: None,
         })
     };
-    areas.iter().filter(|area| (*first..=*last).contains(*area)).map(row).collect()
+    let at_pressure = |pressure_mpa: &f64| {
+        let log_pressure = pressure_mpa.ln();
+        named(FemCurveRow {
+            kind: SurfaceKind::sines(0),
+            realisation: 0,
+            speed_mm_s: 0.0,
+            given: Given::Pressure,
+            contact_area_fraction: area.at(log_pressure).exp(),
+            pressure_mpa: *pressure_mpa,
+            friction_coefficient: friction.at(log_pressure),
+            interpolation_error: errors.at(log_pressure),
+            discretisation_error: None,
+        })
+    };
+    let (least, most) = (pressures[0], pressures[pressures.len() - 1]);
+    let areas = wanted.area_fractions.iter().filter(|area| (*first..=*last).contains(*area));
+    let reached = wanted.pressures_mpa.iter().filter(|p| (least..=most).contains(*p));
+    areas.map(row).chain(reached.map(at_pressure)).collect()
 }
 
 /// What all solves of a curve have in common.
@@ -277,7 +307,7 @@ mod tests {
 
     fn solved(pressure_mpa: f64, friction_coefficient: f64, area: f64) -> FemSolveRow {
         FemSolveRow {
-            waves: 3,
+            kind: SurfaceKind::sines(3),
             realisation: 3,
             speed_mm_s: 50.0,
             pressure_mpa,
@@ -300,7 +330,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = SolveStore::open(folder.path()).unwrap();
         let wave = Wave { wavelength: 1e-3, amplitude: 1e-4, phase: 0.0 };
-        let surface = Surface { waves: 1, realisation: 1, profile: vec![wave] };
+        let surface = Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: vec![wave] };
         let (interrupted, parameters) = (Interrupt::default(), Fem::default());
         let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
         let rubber = Rubber::table_2_1();
@@ -343,7 +373,9 @@ mod tests {
             solved(0.1868, 0.5138, 0.01784),
             solved(0.2335, 0.5850, 0.02157),
         ];
-        let rows = values_at(&[0.005, 0.01, 0.0134, 0.02], &solves, |row| row);
+        let area_fractions = vec![0.005, 0.01, 0.0134, 0.02];
+        let wanted = Wanted { area_fractions, pressures_mpa: Vec::new() };
+        let rows = values_at(&wanted, &solves, |row| row);
         let areas: Vec<f64> = rows.iter().map(|row| row.contact_area_fraction).collect();
         assert_eq!(areas, [0.01, 0.0134, 0.02]);
         for pair in rows.windows(2) {

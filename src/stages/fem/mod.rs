@@ -20,6 +20,7 @@ use crate::artifact::{ArtifactError, RunView, SolveStore};
 use crate::fem::cost::MeshCost;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
+use crate::stages::realise::{Method, SurfaceKind};
 pub(crate) use curve::CurveResult as FemCurve;
 pub use rows::{FEM, FEM_SOLVES, FemCurveRow, FemSolveRow, schemas};
 use schemars::JsonSchema;
@@ -28,7 +29,7 @@ use serde_json::json;
 pub use task::{Sweep, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 9;
+pub const REVISION: u32 = 10;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -49,6 +50,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         "rubber": rubber,
         "speeds_mm_s": bem.speeds_mm_s,
         "area_fractions": bem.area_fractions,
+        "pressures_mpa": bem.pressures_mpa,
     });
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(fem, bem, rubber, &inputs.results, &inputs.store()?, context)
@@ -63,6 +65,10 @@ pub struct Fem {
     /// Numbers of waves whose surfaces are solved, among those of `[realise]`; all of them if empty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub waves: Vec<u32>,
+    /// Other surfaces that are solved with all their waves, among those of `[realise]`: profiles of windows are
+    /// long, and a curve of one takes hours. None by default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub methods: Vec<Method>,
     /// Elements on the shortest wave.
     pub columns_per_shortest_wavelength: u32,
     /// Ratio of neighbouring pressures that are solved; friction is interpolated between them.
@@ -77,6 +83,7 @@ impl Default for Fem {
     fn default() -> Self {
         Self {
             waves: Vec::new(),
+            methods: Vec::new(),
             columns_per_shortest_wavelength: 96,
             pressure_ratio: 1.25,
             estimate_mesh_error: true,
@@ -85,9 +92,12 @@ impl Default for Fem {
 }
 
 impl Fem {
-    /// Whether surfaces of so many waves are solved.
-    pub fn solves(&self, waves: u32) -> bool {
-        self.waves.is_empty() || self.waves.contains(&waves)
+    /// Whether surfaces of that kind are solved.
+    pub fn solves(&self, kind: SurfaceKind) -> bool {
+        match kind.method {
+            Method::Sines => self.waves.is_empty() || self.waves.contains(&kind.waves),
+            method => self.methods.contains(&method),
+        }
     }
 
     pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
@@ -115,7 +125,7 @@ pub fn run(
     let surfaces = read_surfaces(run)?;
     let half_space = run.rows(CURVES)?;
     let tasks = task::tasks(parameters, bem, &surfaces, &half_space);
-    let sweep = Sweep { fem: parameters.clone(), area_fractions: bem.area_fractions.clone() };
+    let sweep = Sweep { fem: parameters.clone(), wanted: bem.wanted() };
     let solve = |task: &Task| task.solve(&sweep, rubber, store, context.watch);
     let tally = Tally::new(context.watch);
     let results: Vec<FemCurve> = tally.side_by_side(&tasks, tasks.len() as u64, solve)?;

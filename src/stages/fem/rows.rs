@@ -1,6 +1,9 @@
 //! The tables of the stage.
 
 use crate::artifact::{Row, SchemaVersion, Table};
+use crate::stages::bem::Given;
+use crate::stages::friction::Condition;
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,13 +15,16 @@ pub const FEM_SOLVES: Table<FemSolveRow> = Table::new("fem", "solves.arrow");
 /// Friction of one realisation at one wanted contact area, at finite deformation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FemCurveRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
+    /// What the value is for: a contact area fraction or a mean pressure.
+    pub given: Given,
     /// Contact area fraction.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
@@ -38,16 +44,24 @@ pub struct FemCurveRow {
     pub discretisation_error: Option<f64>,
 }
 
+impl FemCurveRow {
+    /// What it is given for.
+    pub(super) fn condition(&self) -> Condition {
+        Condition::of(self.given, self.contact_area_fraction, self.pressure_mpa)
+    }
+}
+
 impl Row for FemCurveRow {
     const SCHEMA: &'static str = "asperity.fem.curves";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
 /// One solved contact at finite deformation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FemSolveRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
@@ -88,7 +102,7 @@ pub struct FemSolveRow {
 
 impl Row for FemSolveRow {
     const SCHEMA: &'static str = "asperity.fem.solves";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
 /// Schemas of the results.

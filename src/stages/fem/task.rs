@@ -8,7 +8,7 @@ use crate::fem::error::FemError;
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::rubber::Rubber;
-use crate::stages::bem::{Bem, CurveRow};
+use crate::stages::bem::{Bem, CurveRow, Wanted};
 use crate::stages::kept::SolveTask;
 use crate::stages::micro::{columns, is_of};
 use crate::stages::realise::Surface;
@@ -33,8 +33,8 @@ pub struct Task {
 pub struct Sweep {
     /// Mesh and steps of pressure.
     pub fem: Fem,
-    /// Contact area fractions at which friction is wanted, ascending.
-    pub area_fractions: Vec<f64>,
+    /// What friction is wanted at.
+    pub wanted: Wanted,
 }
 
 /// The surfaces and speeds that the half-space has curves of, as far as they are wanted.
@@ -45,7 +45,7 @@ pub(super) fn tasks(
     half_space: &[CurveRow],
 ) -> Vec<Task> {
     let mut tasks = Vec::new();
-    for surface in surfaces.iter().filter(|surface| parameters.solves(surface.waves)) {
+    for surface in surfaces.iter().filter(|surface| parameters.solves(surface.kind)) {
         for &speed_mm_s in &bem.speeds_mm_s {
             let first = half_space.iter().find(|row| is_of(row, surface, speed_mm_s));
             tasks.extend(first.map(|row| Task {
@@ -68,13 +68,17 @@ impl SolveTask for Task {
     }
 
     fn key(&self, parameters: &Sweep, rubber: &Rubber) -> Digest {
-        Digest::of_value(&json!({
+        let mut key = json!({
             "stage": ["fem", super::REVISION],
             "problem": self.problem(parameters, rubber),
             "parameters": parameters.fem,
-            "area_fractions": parameters.area_fractions,
+            "area_fractions": parameters.wanted.area_fractions,
             "first_guess": self.first_guess,
-        }))
+        });
+        if !parameters.wanted.pressures_mpa.is_empty() {
+            key["pressures_mpa"] = json!(parameters.wanted.pressures_mpa);
+        }
+        Digest::of_value(&key)
     }
 
     fn name(&self) -> String {
@@ -89,12 +93,12 @@ impl SolveTask for Task {
         watch: Watch,
     ) -> Result<CurveResult, StageError> {
         let Self { surface, speed_mm_s, first_guess } = self;
-        let Sweep { fem, area_fractions } = parameters;
-        let (waves, realisation) = (surface.waves, surface.realisation);
+        let Sweep { fem, wanted } = parameters;
+        let (kind, realisation) = (surface.kind, surface.realisation);
         let failed = |source: SolveError| {
             let speed_mm_s = *speed_mm_s;
             source.in_stage(|source| StageError::FiniteDeformation {
-                waves,
+                kind,
                 realisation,
                 speed_mm_s,
                 source,
@@ -103,31 +107,31 @@ impl SolveTask for Task {
         let columns = self.columns(fem);
         let new = |columns| Solver::new(columns, fem, rubber, surface, *speed_mm_s, store, watch);
         let mut solver = new(columns).map_err(failed)?;
-        let ended = match solver.sweep(area_fractions, *first_guess) {
+        let ended = match solver.sweep(wanted, *first_guess) {
             Err(SolveError::FiniteDeformation(error @ FemError::PathEnded { .. })) => Some(error),
             other => other.map_err(failed)?,
         };
-        let mut rows = solver.values(area_fractions);
-        if let Some(coarser) = solver.coarser_values(area_fractions) {
+        let mut rows = solver.values(wanted);
+        if let Some(coarser) = solver.coarser_values(wanted) {
             add_mesh_errors(&mut rows, &coarser);
         } else if fem.estimate_mesh_error {
             let mut coarser = new((columns / 2).max(*COLUMNS_RANGE.start())).map_err(failed)?;
-            match coarser.sweep(area_fractions, *first_guess) {
+            match coarser.sweep(wanted, *first_guess) {
                 Ok(_) | Err(SolveError::FiniteDeformation(FemError::PathEnded { .. })) => {}
                 Err(error) => return Err(failed(error)),
             }
-            add_mesh_errors(&mut rows, &coarser.values(area_fractions));
+            add_mesh_errors(&mut rows, &coarser.values(wanted));
         }
         solver.finish(&self.key(parameters, rubber))?;
-        let missing = area_fractions.len() - rows.len();
+        let missing = wanted.count() - rows.len();
         let warning = (missing > 0).then(|| {
             let why = ended.map_or_else(
                 || "its area does not get there".into(),
                 |error| format!("{error}; try another fem.columns_per_shortest_wavelength"),
             );
             format!(
-                "{waves} waves, realisation {realisation}, {speed_mm_s} mm/s: {missing} of the \
-                 contact areas are not reached: {why}"
+                "{kind}, realisation {realisation}, {speed_mm_s} mm/s: {missing} of the \
+                 contact areas and pressures are not reached: {why}"
             )
         });
         let coarse = solver.coarse_mesh();
@@ -146,8 +150,7 @@ impl Task {
 /// Writes the differences to the values of a coarser mesh, where it has them.
 fn add_mesh_errors(rows: &mut [FemCurveRow], coarser: &[FemCurveRow]) {
     for row in rows {
-        let same =
-            coarser.iter().find(|other| other.contact_area_fraction == row.contact_area_fraction);
+        let same = coarser.iter().find(|other| other.condition() == row.condition());
         row.discretisation_error =
             same.map(|other| (row.friction_coefficient - other.friction_coefficient).abs());
     }

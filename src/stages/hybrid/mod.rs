@@ -8,21 +8,30 @@
 //!
 //! with the local pressures `p_i` of the macro surface under the repulsive law of the microscale.
 
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `rows` | the tables of the stage |
+//! | `stretches` | one value from those by several stretches of the microscale |
+
 mod rows;
+mod stretches;
 
 use super::bem::{CURVES, CurveRow};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::micro::{LAW, LawRow, Micro, SAMPLES, SampleRow, between_samples, law_of};
-use super::realise::{SURFACES, Surface, read_surfaces};
+use super::micro::{
+    LAW, LawRow, Micro, Parting, SAMPLES, SampleRow, between_samples, law_of, partings,
+};
+use super::realise::{SURFACES, Surface, SurfaceKind, read_surfaces};
 use super::{SolveError, Stage, StageError};
 use crate::artifact::RunView;
 use crate::multiscale::correction::{CorrectionRule, MeanRule, Microscale, running_mean};
-use crate::multiscale::scales::Scales;
 use crate::multiscale::{
     LawEnd, LawError, LocalLaw, SoftContact, SoftContactError, SoftContactSolution,
 };
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
+use crate::surface::Wave;
 use crate::units::Units;
 use rayon::prelude::*;
 pub use rows::{HYBRID, HybridRow, LOCAL, LocalRow, schemas};
@@ -31,7 +40,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 5;
+pub const REVISION: u32 = 6;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -121,7 +130,11 @@ pub fn run(
         .par_iter()
         .map(|surface| {
             context.check_interrupt()?;
-            one_surface(parameters, micro, rubber, surface, &data, context.watch.interrupted)
+            let own = |(own, _): &(&[Surface], Parting)| own[0].kind == surface.kind;
+            let parting = partings(&surfaces, micro.rms_slope_threshold).find(own);
+            let parting = parting.map_or(Parting::Shorter(0.0), |(_, parting)| parting);
+            let problem = Problem { parameters, micro, rubber, surface, parting };
+            one_surface(&problem, &data, context.watch.interrupted)
         })
         .collect::<Result<_, StageError>>()?;
     let (rows, locals): (Vec<_>, Vec<_>) = results.into_iter().unzip();
@@ -164,48 +177,99 @@ fn pressed_flat(rows: &[HybridRow]) -> Vec<String> {
         (share > MUCH_BEYOND_FULL_CONTACT).then(|| {
             format!(
                 "{speed} mm/s: up to {:.0} % of the load is on points where the microscale is pressed flat, and its \
-                 correction says least (contact area {}, {} waves; load_beyond_full_contact in {HYBRID})",
+                 correction says least (contact area {}, {}; load_beyond_full_contact in {HYBRID})",
                 100.0 * share,
                 most.contact_area_fraction,
-                most.waves
+                most.kind
             )
         })
     };
     speeds.into_iter().filter_map(at_speed).collect()
 }
 
+/// One surface, and how it is corrected.
+struct Problem<'a> {
+    parameters: &'a Hybrid,
+    micro: &'a Micro,
+    rubber: &'a Rubber,
+    surface: &'a Surface,
+    parting: Parting,
+}
+
 fn one_surface(
-    parameters: &Hybrid,
-    micro: &Micro,
-    rubber: &Rubber,
-    surface: &Surface,
+    problem: &Problem,
     data: &Data,
     interrupt: &Interrupt,
 ) -> Result<(Vec<HybridRow>, Vec<LocalRow>), StageError> {
-    let scales = Scales::part(&surface.profile, micro.rms_slope_threshold);
+    let Problem { micro, surface, parting, .. } = *problem;
+    let scales = parting.scales(&surface.profile);
     let curves: Vec<&CurveRow> =
         data.curves.iter().filter(|row| row.curve() == surface.at(row.speed_mm_s)).collect();
     if scales.micro.is_empty() {
         return Ok((curves.into_iter().map(uncorrected).collect(), Vec::new()));
     }
-    let cell = scales.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
-    let (heights, period) = micro.macro_heights(surface, &scales.macroscale);
+    let cell = match parting {
+        Parting::Steep(_) => scales.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max),
+        Parting::Shorter(limit) => f64::from(micro.stretch_length) * limit,
+    };
+    let macro_surface = MacroSurface::new(micro, surface, &scales.macroscale, cell);
     let (mut rows, mut locals) = (Vec::new(), Vec::new());
     for at_one_speed in curves.chunk_by(|a, b| a.speed_mm_s == b.speed_mm_s) {
         let speed_mm_s = at_one_speed[0].speed_mm_s;
         let failed = |source: SolveError| {
-            let owners = format!("{} waves", surface.waves);
+            let owners = surface.kind.to_string();
             source.in_stage(|source| StageError::Microscale { owners, speed_mm_s, source })
         };
-        let sampled = microscale(parameters, surface, speed_mm_s, data).map_err(failed)?;
-        let Some((microscale, law, full_contact)) = sampled else {
+        let numbers = data.stretches(surface, speed_mm_s);
+        let by_stretch = numbers.iter().map(|stretch| {
+            let own = data.of(surface, speed_mm_s, *stretch);
+            by_one_microscale(problem, &macro_surface, at_one_speed, &own, interrupt)
+        });
+        let by_stretch: Vec<_> = by_stretch.collect::<Result<_, _>>().map_err(failed)?;
+        if by_stretch.is_empty() {
             rows.extend(at_one_speed.iter().map(|curve| beyond(curve, 0.0, 0.0)));
-            continue;
-        };
-        let speed = speed_mm_s.mm_to_m();
+        }
+        let (values, of_stretches): (Vec<Vec<HybridRow>>, Vec<Vec<LocalRow>>) =
+            by_stretch.into_iter().unzip();
+        locals.extend(of_stretches.concat());
+        rows.extend(stretches::combined(&values));
+    }
+    Ok((rows, locals))
+}
+
+/// The heights of a macro surface on their grid.
+struct MacroSurface {
+    heights: Vec<f64>,
+    /// In m.
+    period: f64,
+    /// Period of the microscale in m.
+    cell: f64,
+}
+
+impl MacroSurface {
+    fn new(micro: &Micro, surface: &Surface, macroscale: &[Wave], cell: f64) -> Self {
+        let (heights, period) = micro.macro_heights(surface, macroscale);
+        Self { heights, period, cell }
+    }
+}
+
+/// The curves of a surface at one speed, corrected by one microscale that has samples.
+fn by_one_microscale(
+    problem: &Problem,
+    macro_surface: &MacroSurface,
+    at_one_speed: &[&CurveRow],
+    own: &Sampled,
+    interrupt: &Interrupt,
+) -> Result<(Vec<HybridRow>, Vec<LocalRow>), SolveError> {
+    let Problem { parameters, rubber, .. } = *problem;
+    let MacroSurface { heights, period, cell } = macro_surface;
+    let (period, cell) = (*period, *cell);
+    let (microscale, law, full_contact) = microscale(parameters, own)?;
+    let (mut rows, mut locals) = (Vec::new(), Vec::new());
+    {
+        let speed = at_one_speed[0].speed_mm_s.mm_to_m();
         let mut contact =
-            SoftContact::new_interruptible(rubber, speed, period, &heights, law, interrupt)
-                .map_err(|error| failed(error.into()))?;
+            SoftContact::new_interruptible(rubber, speed, period, heights, law, interrupt)?;
         for curve in at_one_speed {
             let solution = match contact.solve(curve.pressure_mpa.mpa_to_pa()) {
                 Ok(solution) => solution,
@@ -217,7 +281,7 @@ fn one_surface(
                     rows.push(beyond(curve, pressure, largest));
                     continue;
                 }
-                Err(error) => return Err(failed(error.into())),
+                Err(error) => return Err(error.into()),
             };
             let local = match parameters.local_pressures {
                 LocalPressures::Points => solution.pressure.clone(),
@@ -228,40 +292,65 @@ fn one_surface(
             };
             let residual = solution.residual;
             rows.push(corrected(parameters, curve, &microscale, full_contact, &local, residual));
-            locals.extend(local_rows(curve, &microscale, &solution, period, cell));
+            let stretch = own.samples[0].stretch;
+            locals.extend(local_rows(curve, stretch, &microscale, &solution, period, cell));
         }
     }
     Ok((rows, locals))
 }
 
-/// The microscale of a surface at a speed, the law that its macro surface meets and the pressure in Pa of its
-/// full contact on the half-space; none without a sample.
+/// One microscale at one speed: samples, one or more, and law.
+struct Sampled<'a> {
+    samples: Vec<&'a SampleRow>,
+    laws: Vec<LawRow>,
+}
+
+impl Data {
+    /// Numbers of the stretches of a surface at a speed that have samples; 0 is the microscale of sines.
+    fn stretches(&self, surface: &Surface, speed_mm_s: f64) -> Vec<u32> {
+        let own = |row: &&SampleRow| {
+            is_sampled(surface, speed_mm_s, (row.kind, row.realisation, row.speed_mm_s))
+        };
+        let mut numbers: Vec<u32> =
+            self.samples.iter().filter(own).map(|row| row.stretch).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers
+    }
+
+    fn of(&self, surface: &Surface, speed_mm_s: f64, stretch: u32) -> Sampled<'_> {
+        let sample = |row: &&SampleRow| {
+            row.stretch == stretch
+                && is_sampled(surface, speed_mm_s, (row.kind, row.realisation, row.speed_mm_s))
+        };
+        let law = |row: &&LawRow| {
+            row.stretch == stretch
+                && is_sampled(surface, speed_mm_s, (row.kind, row.realisation, row.speed_mm_s))
+        };
+        Sampled {
+            samples: self.samples.iter().filter(sample).collect(),
+            laws: self.laws.iter().filter(law).cloned().collect(),
+        }
+    }
+}
+
+/// Whether a row of a kind, realisation and speed is of the microscale of a surface at a speed.
+fn is_sampled(surface: &Surface, speed_mm_s: f64, row: (SurfaceKind, u32, f64)) -> bool {
+    let (kind, realisation, speed) = row;
+    kind == surface.kind && [0, surface.realisation].contains(&realisation) && speed == speed_mm_s
+}
+
+/// Friction of a microscale between its samples, the law that its macro surface meets and the pressure in Pa of its
+/// full contact on the half-space.
 fn microscale(
     parameters: &Hybrid,
-    surface: &Surface,
-    speed_mm_s: f64,
-    data: &Data,
-) -> Result<Option<(Microscale, LocalLaw, f64)>, SolveError> {
-    let of = |waves: u32, realisation: u32, speed: f64| {
-        waves == surface.waves
-            && [0, surface.realisation].contains(&realisation)
-            && speed == speed_mm_s
-    };
-    let samples: Vec<&SampleRow> =
-        data.samples.iter().filter(|row| of(row.waves, row.realisation, row.speed_mm_s)).collect();
-    if samples.is_empty() {
-        return Ok(None);
-    }
-    let rows: Vec<LawRow> = data
-        .laws
-        .iter()
-        .filter(|row| of(row.waves, row.realisation, row.speed_mm_s))
-        .cloned()
-        .collect();
+    own: &Sampled,
+) -> Result<(Microscale, LocalLaw, f64), SolveError> {
+    let Sampled { samples, laws: rows } = own;
     let column = |value: fn(&SampleRow) -> f64| samples.iter().map(|row| value(row)).collect();
     let pressures: Vec<f64> = column(|row| row.pressure_mpa.mpa_to_pa());
     let law = match parameters.law {
-        RepulsiveLaw::HalfSpace => law_of(&rows)?,
+        RepulsiveLaw::HalfSpace => law_of(rows)?,
         RepulsiveLaw::FiniteDeformation => {
             let separations: Vec<f64> =
                 column(|row| row.separation_finite_deformation_mm.mm_to_m());
@@ -271,9 +360,9 @@ fn microscale(
             LocalLaw::new(touch, &pressures[..falling], &separations[..falling], end)?
         }
     };
-    let microscale = between_samples(&samples);
+    let microscale = between_samples(samples);
     let full_contact = rows.iter().map(|row| row.pressure_pa).fold(0.0, f64::max);
-    Ok(Some((microscale, law, full_contact)))
+    Ok((microscale, law, full_contact))
 }
 
 fn corrected(
@@ -335,9 +424,10 @@ fn beyond(curve: &CurveRow, pressure: f64, largest: f64) -> HybridRow {
 /// Without a microscale the friction is that of the half-space.
 fn uncorrected(curve: &CurveRow) -> HybridRow {
     HybridRow {
-        waves: curve.waves,
+        kind: curve.kind,
         realisation: curve.realisation,
         speed_mm_s: curve.speed_mm_s,
+        given: curve.given,
         contact_area_fraction: curve.contact_area_fraction,
         pressure_mpa: curve.pressure_mpa,
         friction_half_space: curve.friction_coefficient,
@@ -348,6 +438,7 @@ fn uncorrected(curve: &CurveRow) -> HybridRow {
         interpolation_error: curve.interpolation_error,
         discretisation_error: curve.discretisation_error,
         left_out_error: curve.left_out_error,
+        microscale_error: Some(0.0),
         contact_points_fraction: 0.0,
         load_beyond_full_contact: 0.0,
         largest_pressure_mpa: 0.0,
@@ -359,6 +450,7 @@ fn uncorrected(curve: &CurveRow) -> HybridRow {
 /// The cells, one period of the microscale each, whose mean pressure was sampled.
 fn local_rows(
     curve: &CurveRow,
+    stretch: u32,
     microscale: &Microscale,
     solution: &SoftContactSolution,
     period: f64,
@@ -373,9 +465,11 @@ fn local_rows(
             let pressure = solution.pressure[range].iter().sum::<f64>() / count;
             let (half_space, finite) = microscale.friction(pressure)?;
             Some(LocalRow {
-                waves: curve.waves,
+                kind: curve.kind,
                 realisation: curve.realisation,
+                stretch,
                 speed_mm_s: curve.speed_mm_s,
+                given: curve.given,
                 contact_area_fraction: curve.contact_area_fraction,
                 x_mm: ((k as f64 + 0.5) * cell).m_to_mm(),
                 pressure_mpa: pressure.pa_to_mpa(),
@@ -390,6 +484,7 @@ fn local_rows(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::bem::Given;
 
     #[test]
     fn the_share_of_the_load_beyond_full_contact_is_weighted_by_pressure_and_warned_of() {
@@ -397,9 +492,10 @@ mod tests {
         assert_eq!(share_beyond(&[0.0, 0.0], 2.0), 0.0);
         let row = |speed_mm_s, load_beyond_full_contact| {
             let curve = CurveRow {
-                waves: 8,
+                kind: SurfaceKind::sines(8),
                 realisation: 1,
                 speed_mm_s,
+                given: Given::Area,
                 contact_area_fraction: 0.05,
                 pressure_mpa: 1.0,
                 friction_coefficient: 0.5,

@@ -1,6 +1,8 @@
 //! The tables of the stage.
 
 use crate::artifact::{Row, SchemaVersion, Table};
+use crate::stages::bem::Given;
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,13 +14,16 @@ pub const LOCAL: Table<LocalRow> = Table::new("hybrid", "local.arrow");
 /// Corrected friction of one realisation at one contact area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HybridRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
+    /// What the value is for: a contact area fraction or a mean pressure.
+    pub given: Given,
     /// Contact area fraction of the half-space.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
@@ -52,6 +57,10 @@ pub struct HybridRow {
     /// Bound of the change of the mean half-space friction by waves that were left out.
     #[schemars(extend("unit" = "1"))]
     pub left_out_error: f64,
+    /// Half width of the 95 % confidence interval of the friction coefficient by the stretches of the microscale, whose
+    /// mean it is; 0 for the microscale of sines, absent for a single stretch.
+    #[schemars(extend("unit" = "1"))]
+    pub microscale_error: Option<f64>,
     /// Share of the macro points that count as contact points: their local pressure is at least
     /// the smallest one sampled.
     #[schemars(extend("unit" = "1"))]
@@ -73,19 +82,24 @@ pub struct HybridRow {
 
 impl Row for HybridRow {
     const SCHEMA: &'static str = "asperity.hybrid.curves";
-    const VERSION: u32 = 3;
+    const VERSION: u32 = 4;
 }
 
 /// One local correction: the macro points over one period of the microscale, averaged.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LocalRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
+    /// Number of the stretch of the microscale of windows, from 1; 0 for the microscale of sines.
+    pub stretch: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
+    /// What the value is for: a contact area fraction or a mean pressure.
+    pub given: Given,
     /// Contact area fraction of the half-space.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
@@ -108,7 +122,7 @@ pub struct LocalRow {
 
 impl Row for LocalRow {
     const SCHEMA: &'static str = "asperity.hybrid.local";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.

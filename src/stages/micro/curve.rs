@@ -76,7 +76,7 @@ impl<'a> MicroCurve<'a> {
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
     ) -> Result<Self, ArtifactError> {
-        let period = task.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let period = task.period();
         let kept = Kept::open(store, problem(parameters, rubber, task, columns), interrupted)?;
         let set_up: SetUp = Box::new(move || {
             let profile = RigidProfile::from_waves(&task.micro, period);
@@ -112,7 +112,7 @@ impl<'a> MicroCurve<'a> {
         let touch_separation_m = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
             - heights.iter().sum::<f64>() / heights.len() as f64;
         let full = self.half_space.contact()?.smallest_full_contact_pressure();
-        let (Owner { waves, realisation }, speed_mm_s) =
+        let (Owner { kind, realisation, stretch }, speed_mm_s) =
             (self.task.owners[0], self.task.speed_mm_s);
         let mut rows = Vec::with_capacity(LAW_SAMPLES);
         for k in 0..LAW_SAMPLES {
@@ -124,8 +124,9 @@ impl<'a> MicroCurve<'a> {
                 0.0
             };
             rows.push(LawRow {
-                waves,
+                kind,
                 realisation,
+                stretch,
                 speed_mm_s,
                 touch_separation_m,
                 pressure_pa,
@@ -261,14 +262,15 @@ impl<'a> MicroCurve<'a> {
     }
 
     fn row(&mut self, pressure: f64) -> Result<SampleRow, SolveError> {
-        let (Owner { waves, realisation }, speed_mm_s) =
+        let (Owner { kind, realisation, stretch }, speed_mm_s) =
             (self.task.owners[0], self.task.speed_mm_s);
         let half_space = &mut self.half_space;
         let row = self.path.at(pressure, |finite, seconds| {
             let half_space = half_space.at(pressure)?;
             Ok(SampleRow {
-                waves,
+                kind,
                 realisation,
+                stretch,
                 speed_mm_s,
                 pressure_mpa: pressure.pa_to_mpa(),
                 friction_half_space: half_space.friction_coefficient,
@@ -286,7 +288,7 @@ impl<'a> MicroCurve<'a> {
             })
         })?;
         // Another approximation may have the same microscale.
-        Ok(SampleRow { waves, realisation, ..row })
+        Ok(SampleRow { kind, realisation, stretch, ..row })
     }
 }
 
@@ -321,6 +323,9 @@ pub(super) fn problem(parameters: &Micro, rubber: &Rubber, task: &Task, columns:
     problem["profile"] = json!(task.micro);
     problem["speed_mm_s"] = json!(task.speed_mm_s);
     problem["columns"] = json!(columns);
+    if let Some(period) = task.period_m {
+        problem["period_m"] = json!(period);
+    }
     if let Some(length) = parameters.contact_length_mm {
         problem["contact_length_mm"] = json!(length);
     }

@@ -6,11 +6,13 @@
 //! | `curve` | one microscale at one speed, sampled as densely as the tolerance needs |
 //! | `monotony` | what every contact does as it is pressed harder: its area grows and its separation falls |
 //! | `rows` | the tables of the stage |
+//! | `stretches` | the microscale of surfaces, and its stretches where they are windows of the scans |
 //! | `task` | one microscale at one speed: what it is pressed by, and its sampling, on any machine |
 
 mod curve;
 mod monotony;
 mod rows;
+mod stretches;
 mod task;
 
 use super::bem::{CURVES, CurveRow};
@@ -31,11 +33,12 @@ pub use rows::{LAW, LawRow, SAMPLES, SampleRow, schemas};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+pub(crate) use stretches::{Parting, partings, steepest_octave_left, stretches};
 pub(crate) use task::is_of;
 pub use task::{Owner, PressedSurface, Task};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 7;
+pub const REVISION: u32 = 8;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -63,7 +66,9 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
 #[serde(deny_unknown_fields, default)]
 pub struct Micro {
     /// Waves with a larger root mean square slope are the microscale, where deformations are too
-    /// large for the half-space. The default of 0.7 takes in three waves of the bundled asphalt.
+    /// large for the half-space. The default of 0.7 takes in three waves of the bundled asphalt. Of surfaces of
+    /// windows, which have waves of all lengths, it is the shortest octaves: as few as together have a larger slope, or
+    /// leave the rest none.
     pub rms_slope_threshold: f64,
     /// Elements on the shortest wave.
     pub columns_per_shortest_wavelength: u32,
@@ -79,6 +84,25 @@ pub struct Micro {
     /// strain of the microscale. If not given, all have relaxed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_length_mm: Option<f64>,
+    /// Stretches of the microscale of windows that are solved: their differences are the statistical error of its
+    /// correction.
+    #[serde(skip_serializing_if = "are_default_stretches")]
+    pub stretches: u32,
+    /// Length of such a stretch, in wavelengths of the longest wave of the microscale.
+    #[serde(skip_serializing_if = "is_default_length")]
+    pub stretch_length: u32,
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn are_default_stretches(stretches: &u32) -> bool {
+    *stretches == Micro::default().stretches
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_default_length(length: &u32) -> bool {
+    *length == Micro::default().stretch_length
 }
 
 impl Default for Micro {
@@ -90,6 +114,8 @@ impl Default for Micro {
             estimate_mesh_error: true,
             points_per_shortest_macro_wavelength: 32,
             contact_length_mm: None,
+            stretches: 4,
+            stretch_length: 2,
         }
     }
 }
@@ -111,6 +137,10 @@ impl Micro {
             let key = "micro.contact_length_mm";
             require(length > 0.0 && length.is_finite(), key, length, "positive and finite")?;
         }
+        let (key, stretches) = ("micro.stretches", self.stretches);
+        require((1..=1000).contains(&stretches), key, stretches, "1 to 1000")?;
+        let (key, length) = ("micro.stretch_length", self.stretch_length);
+        require((1..=64).contains(&length), key, length, "1 to 64")?;
         let points = self.points_per_shortest_macro_wavelength;
         let key = "micro.points_per_shortest_macro_wavelength";
         require((4..=4096).contains(&points), key, points, "4 to 4096")
@@ -219,10 +249,10 @@ impl TaskResult {
     /// The rows once for every owner.
     fn owned_by(self, owners: &[Owner]) -> Self {
         let (mut samples, mut law) = (Vec::new(), Vec::new());
-        for &Owner { waves, realisation } in owners {
-            let owned = |row: &SampleRow| SampleRow { waves, realisation, ..row.clone() };
+        for &Owner { kind, realisation, stretch } in owners {
+            let owned = |row: &SampleRow| SampleRow { kind, realisation, stretch, ..row.clone() };
             samples.extend(self.samples.iter().map(owned));
-            let owned = |row: &LawRow| LawRow { waves, realisation, ..row.clone() };
+            let owned = |row: &LawRow| LawRow { kind, realisation, stretch, ..row.clone() };
             law.extend(self.law.iter().map(owned));
         }
         Self { samples, law, warnings: self.warnings }

@@ -66,11 +66,13 @@ fn largest_rise(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::realise::SurfaceKind;
 
     fn row(pressure_mpa: f64, area: f64, separation_mm: f64) -> SampleRow {
         SampleRow {
-            waves: 8,
+            kind: SurfaceKind::sines(8),
             realisation: 0,
+            stretch: 0,
             speed_mm_s: 10.0,
             pressure_mpa,
             friction_half_space: 0.5,

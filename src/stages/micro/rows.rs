@@ -1,6 +1,7 @@
 //! The tables of the stage.
 
 use crate::artifact::{Row, SchemaVersion, Table};
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,10 +11,13 @@ pub const SAMPLES: Table<SampleRow> = Table::new("micro", "samples.arrow");
 /// The microscale at one mean pressure, under both models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampleRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
-    /// Number of the realisation, from 1; 0 for a single wave, which all realisations share.
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
+    /// Number of the realisation, from 1; 0 for a single wave and for stretches, which all realisations share.
     pub realisation: u32,
+    /// Number of the stretch of the microscale of windows, from 1; 0 for the microscale of sines.
+    pub stretch: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
@@ -61,7 +65,7 @@ pub struct SampleRow {
 
 impl Row for SampleRow {
     const SCHEMA: &'static str = "asperity.micro.samples";
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
 }
 
 /// The repulsive law of the half-space: `law.arrow`.
@@ -71,10 +75,13 @@ pub const LAW: Table<LawRow> = Table::new("micro", "law.arrow");
 /// curve is full contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LawRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
-    /// Number of the realisation, from 1; 0 for a single wave, which all realisations share.
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
+    /// Number of the realisation, from 1; 0 for a single wave and for stretches, which all realisations share.
     pub realisation: u32,
+    /// Number of the stretch of the microscale of windows, from 1; 0 for the microscale of sines.
+    pub stretch: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
@@ -91,7 +98,7 @@ pub struct LawRow {
 
 impl Row for LawRow {
     const SCHEMA: &'static str = "asperity.micro.law";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.

@@ -1,7 +1,7 @@
 //! One microscale at one speed: what it is pressed by, and its sampling, on any machine.
 
 use super::curve::{MicroCurve, problem};
-use super::{Micro, TaskResult, columns, monotony, same_waves};
+use super::{Micro, Parting, TaskResult, columns, monotony, partings, same_waves, stretches};
 use crate::artifact::{Digest, SolveStore};
 use crate::fem::cost::MeshCost;
 use crate::fem::profile::RigidProfile;
@@ -12,6 +12,7 @@ use crate::rubber::Rubber;
 use crate::stages::bem::CurveRow;
 use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
+use crate::stages::realise::{Method, SurfaceKind};
 use crate::stages::{SolveError, StageError, Watch};
 use crate::surface::Wave;
 use crate::units::Units;
@@ -27,6 +28,13 @@ pub struct Task {
     pub speed_mm_s: f64,
     /// Its waves.
     pub micro: Vec<Wave>,
+    /// Period in m of a stretch; that of its longest wave if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period_m: Option<f64>,
+    /// Wavelength in m below which waves of the surfaces are the microscale; where absent those that are steep by
+    /// themselves are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shorter_than_m: Option<f64>,
     /// The surfaces that press it.
     pub surfaces: Vec<PressedSurface>,
 }
@@ -34,10 +42,14 @@ pub struct Task {
 /// An approximation, or one realisation of it, as the tables name it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Owner {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation; 0 for all of them.
     pub realisation: u32,
+    /// Number of the stretch, from 1; 0 for sines.
+    #[serde(default)]
+    pub stretch: u32,
 }
 
 /// A surface with the largest mean pressure of its half-space contacts.
@@ -61,6 +73,56 @@ pub(super) fn tasks(
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     let mut tasks: Vec<Task> = Vec::new();
+    for (own, parting) in partings(surfaces, parameters.rms_slope_threshold) {
+        match parting {
+            Parting::Steep(_) => of_sines(parameters, own, curves, &speeds, &mut tasks)?,
+            Parting::Shorter(0.0) => {}
+            Parting::Shorter(limit) => {
+                tasks.extend(of_stretches(parameters, own, limit, curves, &speeds)?);
+            }
+        }
+    }
+    Ok(tasks)
+}
+
+/// The microscale of windows: every stretch at every speed, pressed by all surfaces of the kind.
+fn of_stretches(
+    parameters: &Micro,
+    surfaces: &[Surface],
+    limit: f64,
+    curves: &[CurveRow],
+    speeds: &[f64],
+) -> Result<Vec<Task>, StageError> {
+    let mut tasks = Vec::new();
+    for stretch in stretches(parameters, surfaces, limit)? {
+        for &speed_mm_s in speeds {
+            let pressed: Vec<PressedSurface> = surfaces
+                .iter()
+                .filter_map(|surface| PressedSurface::of(surface, curves, speed_mm_s))
+                .collect();
+            let Some(first) = pressed.first() else { continue };
+            let kind = first.surface.kind;
+            tasks.push(Task {
+                owners: vec![Owner { kind, realisation: 0, stretch: stretch.number }],
+                speed_mm_s,
+                micro: stretch.waves.clone(),
+                period_m: Some(stretch.period),
+                shorter_than_m: Some(limit),
+                surfaces: pressed,
+            });
+        }
+    }
+    Ok(tasks)
+}
+
+/// Adds the microscales of sines, which surfaces share where they are the same.
+fn of_sines(
+    parameters: &Micro,
+    surfaces: &[Surface],
+    curves: &[CurveRow],
+    speeds: &[f64],
+    tasks: &mut Vec<Task>,
+) -> Result<(), StageError> {
     for surface in surfaces {
         let Scales { micro, macroscale } =
             Scales::part(&surface.profile, parameters.rms_slope_threshold);
@@ -68,13 +130,13 @@ pub(super) fn tasks(
             continue;
         }
         if macroscale.is_empty() {
-            let (waves, threshold) = (surface.waves, parameters.rms_slope_threshold);
-            return Err(StageError::NoMacroscale { waves, threshold });
+            let (kind, threshold) = (surface.kind, parameters.rms_slope_threshold);
+            return Err(StageError::NoMacroscale { kind, threshold });
         }
-        for &speed_mm_s in &speeds {
+        for &speed_mm_s in speeds {
             let Some(pressed) = PressedSurface::of(surface, curves, speed_mm_s) else { continue };
             let realisation = if micro.len() == 1 { 0 } else { surface.realisation };
-            let owner = Owner { waves: surface.waves, realisation };
+            let owner = Owner { kind: surface.kind, realisation, stretch: 0 };
             let shared = tasks
                 .iter_mut()
                 .find(|task| task.speed_mm_s == speed_mm_s && same_waves(&task.micro, &micro));
@@ -86,10 +148,11 @@ pub(super) fn tasks(
                 continue;
             }
             let (owners, surfaces, micro) = (vec![owner], vec![pressed], micro.clone());
-            tasks.push(Task { owners, speed_mm_s, micro, surfaces });
+            let (period_m, shorter_than_m) = (None, None);
+            tasks.push(Task { owners, speed_mm_s, micro, period_m, shorter_than_m, surfaces });
         }
     }
-    Ok(tasks)
+    Ok(())
 }
 
 /// Whether a value of the half-space is of that surface and speed: not all surfaces that were drawn
@@ -166,16 +229,22 @@ impl SolveTask for Task {
 }
 
 impl Task {
+    /// Period of the microscale in m.
+    pub fn period(&self) -> f64 {
+        let longest = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        self.period_m.unwrap_or(longest)
+    }
+
     /// Elements over the period of the microscale.
     pub fn columns(&self, parameters: &Micro) -> usize {
-        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let period = self.period();
         let shortest = self.micro.iter().map(|wave| wave.wavelength).fold(period, f64::min);
         columns(parameters.columns_per_shortest_wavelength, period, shortest)
     }
 
     /// What its samples cost.
     pub fn cost(&self, parameters: &Micro) -> MeshCost {
-        let period = self.micro.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
+        let period = self.period();
         let profile = RigidProfile::from_waves(&self.micro, period);
         MeshCost::new(&profile, self.columns(parameters), parameters.estimate_mesh_error)
     }
@@ -191,7 +260,9 @@ impl Task {
         let mut largest = 0.0_f64;
         for pressed in &self.surfaces {
             let PressedSurface { surface, most_pressure_mpa, .. } = pressed;
-            let scales = Scales::part(&surface.profile, parameters.rms_slope_threshold);
+            let threshold = parameters.rms_slope_threshold;
+            let parting = self.shorter_than_m.map_or(Parting::Steep(threshold), Parting::Shorter);
+            let scales = parting.scales(&surface.profile);
             let (heights, period) = parameters.macro_heights(surface, &scales.macroscale);
             let speed = self.speed_mm_s.mm_to_m();
             let law = law.clone();
@@ -205,13 +276,20 @@ impl Task {
 
     /// "8 and 9 waves" or "8 waves, realisation 3", for messages.
     pub fn owner_names(&self) -> String {
-        let mut counts: Vec<u32> = self.owners.iter().map(|owner| owner.waves).collect();
-        counts.dedup();
-        let counts: Vec<String> = counts.iter().map(u32::to_string).collect();
-        let waves = format!("{} waves", counts.join(" and "));
+        let mut kinds: Vec<SurfaceKind> = self.owners.iter().map(|owner| owner.kind).collect();
+        kinds.dedup();
+        let all_sines = kinds.iter().all(|kind| kind.method == Method::Sines);
+        let of = |kind: &SurfaceKind| {
+            if all_sines { kind.waves.to_string() } else { kind.to_string() }
+        };
+        let names = kinds.iter().map(of).collect::<Vec<_>>().join(" and ");
+        let names = if all_sines { format!("{names} waves") } else { names };
         match self.owners.first().map(|owner| owner.realisation) {
-            None | Some(0) => waves,
-            Some(realisation) => format!("{waves}, realisation {realisation}"),
+            None | Some(0) => match self.owners.first().map(|owner| owner.stretch) {
+                None | Some(0) => names,
+                Some(stretch) => format!("{names}, stretch {stretch}"),
+            },
+            Some(realisation) => format!("{names}, realisation {realisation}"),
         }
     }
 }

@@ -34,13 +34,14 @@ pub(crate) fn is_negligible(surface: &Surface, tolerance: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::realise::SurfaceKind;
     use crate::surface::Wave;
 
     fn surface(rms_slope: f64) -> Surface {
         let wavelength = 1e-3;
         let amplitude = rms_slope * 2.0_f64.sqrt() * wavelength / TAU;
         let wave = Wave { wavelength, amplitude, phase: 0.0 };
-        Surface { waves: 1, realisation: 1, profile: vec![wave] }
+        Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: vec![wave] }
     }
 
     #[test]

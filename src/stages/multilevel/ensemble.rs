@@ -6,10 +6,12 @@ use super::rows::{AverageRow, PairRow};
 use super::shares::{Costs, Goal, Shares, choose};
 use super::{HalfSpace, Multilevel};
 use crate::contact::refine::LEAST_FRICTION;
+use crate::stages::bem::Given;
 use crate::stages::bem::{Bem, CurveRow};
 use crate::stages::fem::{self, FemCurve, FemCurveRow, FemSolveRow};
 use crate::stages::micro::is_of;
 use crate::stages::realise::Surface;
+use crate::stages::realise::SurfaceKind;
 use crate::units::Units;
 
 /// One approximation at one speed.
@@ -49,7 +51,10 @@ impl<'a> Ensemble<'a> {
         results: &HalfSpace,
     ) -> Self {
         let curve = |surface: &Surface| -> Vec<CurveRow> {
-            let own = results.curves.iter().filter(|row| is_of(row, surface, speed_mm_s));
+            let own = results
+                .curves
+                .iter()
+                .filter(|row| row.given == Given::Area && is_of(row, surface, speed_mm_s));
             own.cloned().collect()
         };
         let curves = surfaces.iter().map(curve);
@@ -61,7 +66,7 @@ impl<'a> Ensemble<'a> {
         let all = if bem.average_tolerance.is_some() { surfaces.len() } else { solved };
         let [begin, end] = [parameters.first_realisations, parameters.most_realisations]
             .map(|count| if negligible.is_some() { 0 } else { count as usize });
-        let own = |row: &&_| is_own(row, first.waves, speed_mm_s);
+        let own = |row: &&_| is_own(row, first.kind, speed_mm_s);
         let mesh = fem::cost(&parameters.fem(), first);
         let solves = results.solves.iter().filter(own);
         Self {
@@ -152,7 +157,7 @@ impl<'a> Ensemble<'a> {
         let others = interpolation_error + left_out_error + model_error;
         let known = discretisation_error.zip(confidence_95);
         AverageRow {
-            waves: self.surfaces[0].waves,
+            kind: self.surfaces[0].kind,
             speed_mm_s: self.speed_mm_s,
             contact_area_fraction: at.half_space[0].contact_area_fraction,
             pressure_mpa: at.pressure(),
@@ -179,7 +184,7 @@ impl<'a> Ensemble<'a> {
 
     pub fn pairs(&self) -> Vec<PairRow> {
         let pair = |half_space: &CurveRow, full: &FemCurveRow| PairRow {
-            waves: full.waves,
+            kind: full.kind,
             realisation: full.realisation,
             speed_mm_s: full.speed_mm_s,
             contact_area_fraction: full.contact_area_fraction,
@@ -214,11 +219,11 @@ impl<'a> Ensemble<'a> {
         let mut warnings: Vec<String> =
             self.full.iter().flat_map(|curve| curve.warnings.iter().cloned()).collect();
         let averages = self.averages();
-        let (waves, speed) = (self.surfaces[0].waves, self.speed_mm_s);
+        let (kind, speed) = (self.surfaces[0].kind, self.speed_mm_s);
         let unreached = self.area_fractions.len() - averages.len();
         if unreached > 0 {
             warnings.push(format!(
-                "{waves} waves, {speed} mm/s: {unreached} of {} areas have no average: the finite elements do \
+                "{kind}, {speed} mm/s: {unreached} of {} areas have no average: the finite elements do \
                  not reach them in every realisation",
                 self.area_fractions.len()
             ));
@@ -242,11 +247,11 @@ impl<'a> Ensemble<'a> {
         };
         (count > 0).then(|| {
             format!(
-                "{} waves, {} mm/s: the error of {count} of {} averages exceeds the tolerance {tolerance}: at \
+                "{}, {} mm/s: the error of {count} of {} averages exceeds the tolerance {tolerance}: at \
                  area {} it is {} of the friction, {} of it by {} realisations and {} pairs, {} by the mesh \
                  (multilevel.most_realisations, realise.most_realisations, \
                  multilevel.columns_per_shortest_wavelength)",
-                worst.waves,
+                worst.kind,
                 worst.speed_mm_s,
                 averages.len(),
                 worst.contact_area_fraction,
@@ -260,8 +265,8 @@ impl<'a> Ensemble<'a> {
     }
 }
 
-fn is_own(row: &crate::stages::bem::SolveRow, waves: u32, speed_mm_s: f64) -> bool {
-    row.waves == waves && row.speed_mm_s == speed_mm_s
+fn is_own(row: &crate::stages::bem::SolveRow, kind: SurfaceKind, speed_mm_s: f64) -> bool {
+    row.kind == kind && row.speed_mm_s == speed_mm_s
 }
 
 impl AtArea<'_> {

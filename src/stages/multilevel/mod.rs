@@ -22,7 +22,7 @@ mod rows;
 mod shares;
 mod work;
 
-use super::bem::{Bem, CURVES, CurveRow, SOLVES, SolveRow};
+use super::bem::{Bem, CURVES, CurveRow, SOLVES, SolveRow, Wanted};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::fem::{Fem, Sweep};
 use super::realise::{SURFACES, Surface, read_surfaces};
@@ -30,6 +30,7 @@ use super::{Stage, StageError, Watch};
 use crate::artifact::{RunView, SolveStore};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
+use crate::stages::realise::Method;
 pub(crate) use bound::is_negligible;
 use ensemble::Ensemble;
 pub use estimate::Estimate;
@@ -41,7 +42,7 @@ pub use work::Missing;
 use work::Work;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 3;
+pub const REVISION: u32 = 4;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -114,6 +115,7 @@ impl Multilevel {
     pub fn fem(&self) -> Fem {
         Fem {
             waves: Vec::new(),
+            methods: Vec::new(),
             columns_per_shortest_wavelength: self.columns_per_shortest_wavelength,
             pressure_ratio: self.pressure_ratio,
             estimate_mesh_error: self.estimate_mesh_error,
@@ -122,8 +124,13 @@ impl Multilevel {
 
     /// The same with the areas of the half-space.
     pub(crate) fn sweep(&self, bem: &Bem) -> Sweep {
-        Sweep { fem: self.fem(), area_fractions: bem.area_fractions.clone() }
+        Sweep { fem: self.fem(), wanted: areas_alone(bem) }
     }
+}
+
+/// The stage averages at contact areas alone.
+fn areas_alone(bem: &Bem) -> Wanted {
+    Wanted { pressures_mpa: Vec::new(), ..bem.wanted() }
 }
 
 /// Solves what is not in the store and writes the results; returns warnings.
@@ -195,7 +202,8 @@ fn ensembles<'a>(
     half_space: &HalfSpace,
 ) -> Vec<Ensemble<'a>> {
     surfaces
-        .chunk_by(|a, b| a.waves == b.waves)
+        .chunk_by(|a, b| a.kind == b.kind)
+        .filter(|of_one| of_one[0].kind.method == Method::Sines)
         .flat_map(|of_one| {
             let speeds = bem.speeds_mm_s.iter();
             speeds.map(move |speed| Ensemble::new(parameters, bem, of_one, *speed, half_space))

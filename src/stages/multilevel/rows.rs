@@ -3,6 +3,7 @@
 use crate::artifact::{Row, SchemaVersion, Table};
 use crate::stages::bem::CurveRow;
 use crate::stages::fem::FemSolveRow;
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -19,8 +20,9 @@ pub const SOLVES: Table<FemSolveRow> = Table::new("multilevel", "solves.arrow");
 /// Average friction at finite deformation at one contact area, from both models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AverageRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
@@ -80,14 +82,15 @@ pub struct AverageRow {
 
 impl Row for AverageRow {
     const SCHEMA: &'static str = "asperity.multilevel.averages";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// One realisation under both models at one contact area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PairRow {
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
@@ -121,7 +124,7 @@ pub struct PairRow {
 
 impl Row for PairRow {
     const SCHEMA: &'static str = "asperity.multilevel.pairs";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.

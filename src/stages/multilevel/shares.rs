@@ -45,7 +45,7 @@ impl Costs {
         bem: &Bem,
     ) -> Self {
         let work: f64 = solves.map(|row| (row.iterations * row.grid_points) as f64).sum();
-        let pressures = solves_of_curve(&bem.area_fractions, fem.pressure_ratio);
+        let pressures = solves_of_curve(bem.wanted().range(), fem.pressure_ratio);
         Self {
             half_space: SECONDS_PER_POINT_AND_ITERATION * work / curves.max(1) as f64,
             pair: mesh.seconds_of_solves(pressures),

@@ -3,6 +3,10 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `accuracy` | whether the averages have the accuracy that the recipe asks for |
+//! | `basis` | what the averages rest on: windows, the shortest wavelength, and the errors by both |
+//! | `budget` | what the error of every average is made of |
+//! | `doubts` | what a reader of the averages should be told |
+//! | `methods` | friction of the surfaces that stand for the road beside that of its measured profiles |
 //! | `model_error` | how far the hybrid is from what it approximates |
 //! | `models` | how far the models of a run are apart |
 //! | `multilevel` | the averages of the stage multilevel as rows of the friction tables |
@@ -11,6 +15,10 @@
 //! | `theories` | what older theories predict at the areas of the half-space |
 
 mod accuracy;
+mod basis;
+mod budget;
+mod doubts;
+mod methods;
 mod model_error;
 mod models;
 mod multilevel;
@@ -19,18 +27,25 @@ mod rows;
 mod theories;
 
 use super::approximate::WAVES;
-use super::bem::CURVES;
+use super::bem::{CURVES, Given};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::fem;
-use super::friction::FrictionAt;
+use super::friction::{Condition, FrictionAt};
 use super::hybrid::{self, Hybrid};
+use super::realise::{Method, read_surfaces};
 use super::{Stage, StageError};
 use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
+use crate::stages::realise::SurfaceKind;
 use accuracy::missed;
+use basis::Basis;
+use budget::budget;
+pub use budget::{BUDGET, BudgetRow, Part};
+use doubts::doubts;
+pub use methods::{METHODS, MethodRow};
 use models::comparisons;
 pub use models::{MODELS, ModelRow};
 pub use published::{
@@ -46,7 +61,7 @@ use theories::predictions;
 pub use theories::{THEORIES, Theory, TheoryConstants, TheoryRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 8;
+pub const REVISION: u32 = 9;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -69,6 +84,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         }),
         fem: chain.fem.is_some(),
         multilevel: chain.multilevel.is_some(),
+        scans: chain.ingest.is_some(),
     };
     let mut parameters = json!(tables);
     // Where the published tables are is no parameter: their names and digests are inputs.
@@ -78,9 +94,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
             table.remove("file");
         }
     }
-    if !tables.theories.is_empty() {
-        parameters["rubber"] = json!(rubber);
-    }
+    parameters["rubber"] = json!(rubber);
     let run = move |inputs: &Inputs, context: &mut Context| {
         run(tables, models, rubber, &inputs.results, context)
     };
@@ -91,7 +105,10 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         .reading_if(chain.fem.is_some(), super::fem::FEM)
         .reading_if(chain.multilevel.is_some(), super::multilevel::AVERAGES)
         .reading_if(chain.multilevel.is_some(), super::multilevel::PAIRS)
-        .reading_if(!tables.theories.is_empty(), super::realise::SURFACES)
+        .reading(super::bem::SCAN_ERRORS)
+        .reading(super::realise::SURFACES)
+        .reading_if(chain.realise.has_windows(), super::realise::PROFILES)
+        .reading_if(chain.ingest.is_some(), super::ingest::WINDOWS)
         .reading_if(!tables.published_corrections.is_empty(), super::micro::SAMPLES);
     Some(planned.with_inputs(request.published.clone()))
 }
@@ -139,6 +156,15 @@ pub struct Models {
     pub fem: bool,
     /// The recipe has a section `[multilevel]`.
     pub multilevel: bool,
+    /// The recipe has scans.
+    pub scans: bool,
+}
+
+impl Models {
+    /// Above this root mean square slope waves are corrected.
+    fn threshold(self) -> Option<f64> {
+        self.hybrid.map(|corrected| corrected.rms_slope_threshold)
+    }
 }
 
 /// How the half-space is corrected by its steepest waves.
@@ -163,6 +189,8 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let (fitted, metadata) = run.read_table(WAVES)?;
     let half_space = run.rows(CURVES)?;
+    let surfaces = read_surfaces(run)?;
+    let basis = Basis::read(run, &surfaces, models.scans)?;
     let bem: Vec<FrictionAt> = half_space.iter().map(FrictionAt::from).collect();
     let mut rows = average(Model::Bem, bem.clone());
     if models.hybrid.is_some() {
@@ -176,7 +204,7 @@ pub fn run(
         rows.extend(average(Model::Fem, complete(values, &bem)));
     }
     if let Some(corrected) = models.hybrid {
-        model_error::add(&mut rows, &fitted, corrected);
+        model_error::add(&mut rows, &fitted, &surfaces, corrected);
     }
     if models.multilevel {
         rows.extend(multilevel::read(run)?);
@@ -190,10 +218,18 @@ pub fn run(
         }
         context.pending.write_rows(THEORIES, &predictions)?;
     }
+    basis.complete(&mut rows);
+    warnings.extend(doubts(&rows, &surfaces, rubber, models.threshold()));
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
-    warnings.extend(parameters.tolerance.and_then(|tolerance| missed(tolerance, &rows)));
+    warnings
+        .extend(parameters.tolerance.map_or_else(Vec::new, |tolerance| missed(tolerance, &rows)));
     context.pending.write_rows(FRICTION, &rows)?;
+    context.pending.write_rows(BUDGET, &budget(&rows))?;
+    let methods = methods::compared(&rows);
+    if methods.iter().any(|row| row.kind.method != Method::Measured) {
+        context.pending.write_rows(METHODS, &methods)?;
+    }
     if models.hybrid.is_some() || models.fem || models.multilevel || !theories.is_empty() {
         context.pending.write_rows(MODELS, &comparisons(&rows))?;
     }
@@ -215,23 +251,24 @@ fn complete(values: Vec<FrictionAt>, half_space: &[FrictionAt]) -> Vec<FrictionA
 }
 
 /// What the values of one average have in common.
-fn key(value: &FrictionAt) -> (u32, u64, u64) {
-    (value.curve.waves, value.curve.speed_mm_s.to_bits(), value.contact_area_fraction.to_bits())
+fn key(value: &FrictionAt) -> (SurfaceKind, u64, Condition) {
+    (value.curve.kind, value.curve.speed_mm_s.to_bits(), value.condition())
 }
 
-/// One row for each number of waves, speed and area, ascending.
+/// One row for each kind of surfaces, speed and area or pressure, ascending.
 fn average(model: Model, mut curves: Vec<FrictionAt>) -> Vec<FrictionRow> {
     let order = |a: &FrictionAt, b: &FrictionAt| {
         a.curve
-            .waves
-            .cmp(&b.curve.waves)
+            .kind
+            .cmp(&b.curve.kind)
             .then(a.curve.speed_mm_s.total_cmp(&b.curve.speed_mm_s))
-            .then(a.contact_area_fraction.total_cmp(&b.contact_area_fraction))
+            .then(a.condition().cmp(&b.condition()))
     };
     curves.sort_by(|a, b| order(a, b).then(a.curve.realisation.cmp(&b.curve.realisation)));
     curves.chunk_by(|a, b| order(a, b).is_eq()).map(|values| row(model, values)).collect()
 }
 
+/// An average without what it rests on, see [`Basis::complete`].
 fn row(model: Model, curves: &[FrictionAt]) -> FrictionRow {
     let realisations: Vec<f64> = curves.iter().map(|c| c.friction_coefficient).collect();
     let estimate = MeanEstimate::of(&realisations);
@@ -246,25 +283,37 @@ fn row(model: Model, curves: &[FrictionAt]) -> FrictionRow {
     let interpolation_error = mean(|curve| curve.interpolation_error);
     let left_out_error = mean(|curve| curve.left_out_error);
     let statistical_error = present(estimate.confidence_95);
-    let solved = discretisation_error.map(|error| error + interpolation_error + left_out_error);
+    let microscale_error = curves
+        .iter()
+        .map(|curve| curve.microscale_error)
+        .try_fold(0.0, |sum, error| Some(sum + error? / count));
     FrictionRow {
         model,
-        waves: first.curve.waves,
+        kind: first.curve.kind,
         speed_mm_s: first.curve.speed_mm_s,
-        contact_area_fraction: first.contact_area_fraction,
+        given: first.given,
+        contact_area_fraction: match first.given {
+            Given::Area => first.contact_area_fraction,
+            Given::Pressure => mean(|curve| curve.contact_area_fraction),
+        },
+        shortest_wavelength_mm: 0.0,
+        windows: 0,
         realisations,
         half_space_realisations: None,
         mean: estimate.mean,
         standard_deviation: present(estimate.standard_deviation),
         confidence_95: statistical_error,
+        scan_error: None,
         interpolation_error,
         discretisation_error,
         left_out_error,
+        microscale_error: microscale_error.filter(|_| model == Model::Hybrid),
         model_error: None,
-        error_estimate: solved
-            .zip(statistical_error)
-            .map(|(solved, statistical)| solved + statistical),
-        pressure_mpa: mean(|curve| curve.pressure_mpa),
+        error_estimate: None,
+        pressure_mpa: match first.given {
+            Given::Area => mean(|curve| curve.pressure_mpa),
+            Given::Pressure => first.pressure_mpa,
+        },
         shortest_reliable_wavelength_mm: None,
     }
 }
@@ -276,13 +325,15 @@ mod tests {
 
     pub(super) fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> FrictionAt {
         FrictionAt {
-            curve: CurveId { waves, realisation, speed_mm_s: 10.0 },
+            curve: CurveId { kind: SurfaceKind::sines(waves), realisation, speed_mm_s: 10.0 },
+            given: Given::Area,
             contact_area_fraction: area,
             pressure_mpa: friction,
             friction_coefficient: friction,
             interpolation_error: friction / 1e3,
             discretisation_error: (realisation < 9).then_some(friction / 2e3),
             left_out_error: 0.0,
+            microscale_error: Some(0.0),
         }
     }
 
@@ -297,7 +348,7 @@ mod tests {
 
     #[test]
     fn rows_are_averaged_over_realisations_whatever_their_order() {
-        let rows = average(
+        let mut rows = average(
             Model::Bem,
             vec![
                 curve(9, 1, 0.1, 7.0),
@@ -314,12 +365,16 @@ mod tests {
         let expected = 12.7062 * 2.0_f64.sqrt() / 2.0_f64.sqrt();
         approx::assert_relative_eq!(rows[1].confidence_95.unwrap(), expected, max_relative = 1e-5);
         // Means of grid 1e-3 and of interpolation 2e-3, statistics.
+        for row in &mut rows {
+            row.scan_error = Some(0.0);
+            row.error_estimate = basis::sum_of_errors(row);
+        }
         approx::assert_relative_eq!(
             rows[1].error_estimate.unwrap(),
             3e-3 + rows[1].confidence_95.unwrap(),
             max_relative = 1e-12
         );
-        assert_eq!((rows[2].waves, rows[2].confidence_95), (9, None));
+        assert_eq!((rows[2].kind.waves, rows[2].confidence_95), (9, None));
         assert_eq!((rows[2].discretisation_error, rows[2].error_estimate), (Some(3.5e-3), None));
         let unknown = row(Model::Bem, &[curve(8, 1, 0.1, 1.0), curve(8, 9, 0.1, 1.1)]);
         assert_eq!((unknown.discretisation_error, unknown.error_estimate), (None, None));

@@ -3,6 +3,8 @@
 use super::FrictionRow;
 use super::Model::{self, Bem, Fem, Hybrid, KlueppelHeinrich, Multilevel, Persson};
 use crate::artifact::{Row, Table};
+use crate::stages::bem::Given;
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,11 +19,14 @@ pub struct ModelRow {
     pub model: Model,
     /// The model that it is measured by.
     pub reference: Model,
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
+    /// What friction is given for: contact area fractions or mean pressures.
+    pub given: Given,
     /// Smallest contact area fraction that both have.
     #[schemars(extend("unit" = "1"))]
     pub from_area_fraction: f64,
@@ -44,7 +49,7 @@ pub struct ModelRow {
 
 impl Row for ModelRow {
     const SCHEMA: &'static str = "asperity.tables.models";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Every pair of models of a run, the better one as the reference; the theories by what is solved.
@@ -75,12 +80,14 @@ fn apart(rows: &[FrictionRow], model: Model, reference: Model) -> Vec<ModelRow> 
         rows.iter().filter(own).collect::<Vec<_>>()
     };
     let (model_rows, reference_rows) = (of(model), of(reference));
-    let same_table =
-        |a: &&FrictionRow, b: &&FrictionRow| a.waves == b.waves && a.speed_mm_s == b.speed_mm_s;
+    let same_table = |a: &&FrictionRow, b: &&FrictionRow| {
+        (a.kind, a.given) == (b.kind, b.given) && a.speed_mm_s == b.speed_mm_s
+    };
     let counterpart = |row: &&FrictionRow| {
-        reference_rows.iter().copied().find(|other| {
-            same_table(row, other) && row.contact_area_fraction == other.contact_area_fraction
-        })
+        reference_rows
+            .iter()
+            .copied()
+            .find(|other| same_table(row, other) && row.condition() == other.condition())
     };
     let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
     model_rows
@@ -97,8 +104,9 @@ fn apart(rows: &[FrictionRow], model: Model, reference: Model) -> Vec<ModelRow> 
             Some(ModelRow {
                 model,
                 reference,
-                waves: first.waves,
+                kind: first.kind,
                 speed_mm_s: first.speed_mm_s,
+                given: first.given,
                 from_area_fraction: first.contact_area_fraction,
                 to_area_fraction: last.contact_area_fraction,
                 areas: pairs.len() as u32,

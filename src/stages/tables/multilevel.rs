@@ -3,6 +3,7 @@
 use super::{FrictionRow, Model};
 use crate::artifact::{ArtifactError, RunView};
 use crate::numerics::statistics::MeanEstimate;
+use crate::stages::bem::Given;
 use crate::stages::multilevel::{AVERAGES, AverageRow, PAIRS, PairRow};
 
 /// The rows of the model `multilevel`: the realisations that were solved at finite deformation, and the
@@ -13,8 +14,8 @@ pub(super) fn read(run: &RunView) -> Result<Vec<FrictionRow>, ArtifactError> {
     let mut rows: Vec<FrictionRow> =
         averages.iter().map(|average| row(average, &realisations(average, &pairs))).collect();
     rows.sort_by(|a, b| {
-        a.waves
-            .cmp(&b.waves)
+        a.kind
+            .cmp(&b.kind)
             .then(a.speed_mm_s.total_cmp(&b.speed_mm_s))
             .then(a.contact_area_fraction.total_cmp(&b.contact_area_fraction))
     });
@@ -24,7 +25,7 @@ pub(super) fn read(run: &RunView) -> Result<Vec<FrictionRow>, ArtifactError> {
 /// Friction at finite deformation of the pairs of an average, in the order of the realisations.
 fn realisations(average: &AverageRow, pairs: &[PairRow]) -> Vec<f64> {
     let own = |pair: &&PairRow| {
-        (pair.waves, pair.speed_mm_s) == (average.waves, average.speed_mm_s)
+        (pair.kind, pair.speed_mm_s) == (average.kind, average.speed_mm_s)
             && pair.contact_area_fraction == average.contact_area_fraction
     };
     let mut own: Vec<&PairRow> = pairs.iter().filter(own).collect();
@@ -36,17 +37,22 @@ fn row(average: &AverageRow, realisations: &[f64]) -> FrictionRow {
     let deviation = MeanEstimate::of(realisations).standard_deviation;
     FrictionRow {
         model: Model::Multilevel,
-        waves: average.waves,
+        kind: average.kind,
         speed_mm_s: average.speed_mm_s,
+        given: Given::Area,
         contact_area_fraction: average.contact_area_fraction,
+        shortest_wavelength_mm: 0.0,
+        windows: 0,
         realisations: realisations.to_vec(),
         half_space_realisations: Some(average.half_space_realisations),
         mean: average.friction_coefficient,
         standard_deviation: deviation.is_finite().then_some(deviation),
         confidence_95: average.confidence_95,
+        scan_error: None,
         interpolation_error: average.interpolation_error,
         discretisation_error: average.discretisation_error,
         left_out_error: average.left_out_error,
+        microscale_error: None,
         model_error: Some(average.model_error),
         error_estimate: average.error_estimate,
         pressure_mpa: average.pressure_mpa,

@@ -2,10 +2,11 @@
 
 use super::super::approximate::ScaleRow;
 use super::super::micro::{SAMPLES, SampleRow, between_samples};
-use super::super::realise::same_surfaces;
+use super::super::realise::{Method, SurfaceKind, same_surfaces};
 use super::{FrictionRow, Model, Tables};
 use crate::artifact::{Digest, Input, Metadata, Row, RunView, Table};
 use crate::files;
+use crate::stages::bem::Given;
 use crate::stages::{Context, StageError};
 use crate::units::Units;
 use schemars::JsonSchema;
@@ -213,8 +214,9 @@ fn compare(
     for line in lines::<Line>(&published.file)? {
         let computed = rows.iter().find(|row| {
             row.model == published.model
-                && is_of(row.waves, published.waves, fitted)
+                && is_of(row.kind, published.waves, fitted)
                 && row.speed_mm_s == published.speed_mm_s
+                && row.given == Given::Area
                 && row.contact_area_fraction == line.area_fraction
         });
         compared.extend(computed.map(|row| ComparisonRow {
@@ -251,7 +253,7 @@ fn compare_corrections(
         .filter(|row| {
             row.realisation <= 1
                 && row.speed_mm_s == published.speed_mm_s
-                && is_of(row.waves, published.waves, fitted)
+                && is_of(row.kind, published.waves, fitted)
         })
         .collect();
     if own.is_empty() {
@@ -279,6 +281,8 @@ fn compare_corrections(
     Ok(compared)
 }
 
-fn is_of(waves: u32, published: u32, fitted: &[ScaleRow]) -> bool {
-    waves == published || same_surfaces(fitted, waves, published)
+/// Published tables are of sines.
+fn is_of(kind: SurfaceKind, published: u32, fitted: &[ScaleRow]) -> bool {
+    kind.is_sines(published)
+        || kind.method == Method::Sines && same_surfaces(fitted, kind.waves, published)
 }

@@ -1,7 +1,10 @@
 //! The tables of the stage.
 
-use super::{COMPARISON, CORRECTIONS, MODELS, THEORIES};
+use super::{BUDGET, COMPARISON, CORRECTIONS, METHODS, MODELS, THEORIES};
 use crate::artifact::{Row, SchemaVersion, Table};
+use crate::stages::bem::Given;
+use crate::stages::friction::Condition;
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -56,14 +59,22 @@ pub struct FrictionRow {
     /// waves; `fem`, all waves at finite deformation; `multilevel`, the half-space with the mean difference
     /// to all waves at finite deformation; `persson` and `klueppel-heinrich`, the theories.
     pub model: Model,
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
-    /// Contact area fraction.
+    /// What the value is for: a contact area fraction or a mean pressure.
+    pub given: Given,
+    /// Contact area fraction, averaged over the realisations where the pressure is given.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
+    /// Shortest wavelength of the surfaces.
+    #[schemars(extend("unit" = "mm"))]
+    pub shortest_wavelength_mm: f64,
+    /// Windows of the scans that the surfaces are made of; 0 where the recipe states the waves.
+    pub windows: u32,
     /// Friction coefficient of each realisation, in their order; of `multilevel` those that were solved at
     /// finite deformation.
     #[schemars(extend("unit" = "1"))]
@@ -78,9 +89,13 @@ pub struct FrictionRow {
     #[schemars(extend("unit" = "1"))]
     pub standard_deviation: Option<f64>,
     /// Half width of the 95 % confidence interval of the mean, Student's t; absent for fewer than
-    /// two. Of `multilevel` it holds the spread of the half-space and of the differences.
+    /// two. Draws of one window count once, by their mean. Of `multilevel` it holds the spread of the half-space and of the differences.
     #[schemars(extend("unit" = "1"))]
     pub confidence_95: Option<f64>,
+    /// Half width of the 95 % confidence interval of the mean by the choice of scans, of `sines`; 0 for other surfaces, whose
+    /// scatter holds it, and where the recipe states the waves. Absent where it is not known, as for a single window.
+    #[schemars(extend("unit" = "1"))]
+    pub scan_error: Option<f64>,
     /// Estimated error of the mean by interpolation: the mean of those of the realisations.
     #[schemars(extend("unit" = "1"))]
     pub interpolation_error: f64,
@@ -91,17 +106,21 @@ pub struct FrictionRow {
     /// Bound of the change of the mean by waves that most realisations were solved without.
     #[schemars(extend("unit" = "1"))]
     pub left_out_error: f64,
+    /// Of `hybrid` the half width of the 95 % confidence interval of the mean by the stretches of the microscale, which all
+    /// realisations share: 0 for the microscale of sines. Absent for other models, and for a single stretch.
+    #[schemars(extend("unit" = "1"))]
+    pub microscale_error: Option<f64>,
     /// Of `multilevel` the bound of the difference to all waves at finite deformation where it solved none, 0
     /// where it did. Of `hybrid` the difference to all waves at finite deformation that this run has, or where
     /// it has none the share of friction that was measured on other surfaces. Absent for other models.
     #[schemars(extend("unit" = "1"))]
     pub model_error: Option<f64>,
-    /// Sum of the statistical error, which is `confidence_95`, the interpolation error, the
-    /// discretisation error, that by waves left out and the model error of `hybrid` and `multilevel`; absent
-    /// where one of them is not known.
+    /// Error of the mean, all parts: the root of the sum of squares of `confidence_95`, `scan_error` and
+    /// `microscale_error`, which are independent, plus the errors by interpolation, by discretisation, by waves left out and
+    /// of the model; absent where one of them is not known.
     #[schemars(extend("unit" = "1"))]
     pub error_estimate: Option<f64>,
-    /// Mean pressure averaged over the realisations.
+    /// Mean pressure, averaged over the realisations where the area is given.
     #[schemars(extend("unit" = "MPa"))]
     pub pressure_mpa: f64,
     /// Shortest wavelength that the scans show as it is: two spacings, or what spot or tip of the
@@ -111,17 +130,26 @@ pub struct FrictionRow {
     pub shortest_reliable_wavelength_mm: Option<f64>,
 }
 
+impl FrictionRow {
+    /// What it is given for.
+    pub(crate) fn condition(&self) -> Condition {
+        Condition::of(self.given, self.contact_area_fraction, self.pressure_mpa)
+    }
+}
+
 impl Row for FrictionRow {
     const SCHEMA: &'static str = "asperity.tables.friction";
-    const VERSION: u32 = 6;
+    const VERSION: u32 = 7;
 }
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
     vec![
         FRICTION.schema(),
+        BUDGET.schema(),
         COMPARISON.schema(),
         CORRECTIONS.schema(),
+        METHODS.schema(),
         MODELS.schema(),
         THEORIES.schema(),
     ]

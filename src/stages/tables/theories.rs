@@ -7,6 +7,8 @@ use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::{Rubber, RubberError};
 use crate::stages::StageError;
 use crate::stages::bem::CurveRow;
+use crate::stages::bem::Given;
+use crate::stages::realise::SurfaceKind;
 use crate::stages::realise::{Surface, read_surfaces};
 use crate::surface::{SineScale, wave};
 use crate::theory::{KlueppelHeinrich, Persson};
@@ -88,13 +90,16 @@ impl TheoryConstants {
 pub struct TheoryRow {
     /// Theory: `persson` or `klueppel-heinrich`.
     pub model: Model,
-    /// Number of waves of the approximation.
-    pub waves: u32,
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
     /// Number of the realisation, from 1.
     pub realisation: u32,
     /// Sliding speed.
     #[schemars(extend("unit" = "mm/s"))]
     pub speed_mm_s: f64,
+    /// What the value is for: a contact area fraction or a mean pressure.
+    pub given: Given,
     /// Contact area fraction of the theory.
     #[schemars(extend("unit" = "1"))]
     pub contact_area_fraction: f64,
@@ -108,7 +113,7 @@ pub struct TheoryRow {
 
 impl Row for TheoryRow {
     const SCHEMA: &'static str = "asperity.tables.theories";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// The predictions of the theories for the surfaces, speeds and areas of the half-space, in its order.
@@ -133,13 +138,14 @@ pub(super) fn predictions(
             let predict = prediction(theory, constants, rubber, surface, speed)
                 .map_err(|source| no_modulus(theory, source))?;
             rows.extend(curve.iter().map(|row| {
-                let (pressure, friction_coefficient) = predict(row.contact_area_fraction);
+                let (area, pressure, friction_coefficient) = predict(row);
                 TheoryRow {
                     model: theory.model(),
-                    waves: row.waves,
+                    kind: row.kind,
                     realisation: row.realisation,
                     speed_mm_s: row.speed_mm_s,
-                    contact_area_fraction: row.contact_area_fraction,
+                    given: row.given,
+                    contact_area_fraction: area,
                     pressure_mpa: pressure.pa_to_mpa(),
                     friction_coefficient,
                 }
@@ -149,8 +155,8 @@ pub(super) fn predictions(
     Ok(rows)
 }
 
-/// Mean pressure in Pa and friction coefficient over the contact area fraction.
-type Prediction = Box<dyn Fn(f64) -> (f64, f64)>;
+/// Contact area fraction, mean pressure in Pa and friction coefficient at what a row is given for.
+type Prediction = Box<dyn Fn(&CurveRow) -> (f64, f64, f64)>;
 
 /// What a theory predicts on a surface.
 ///
@@ -169,15 +175,36 @@ fn prediction(
     Ok(match theory {
         Theory::Persson => {
             let theory = Persson::new(&scales, rubber, speed, constants.persson_gamma)?;
-            Box::new(move |area| {
-                let pressure = theory.mean_pressure(area);
-                (pressure, theory.friction_coefficient(pressure))
+            Box::new(move |row| {
+                let (area, pressure) = match row.given {
+                    Given::Area => {
+                        let area = row.contact_area_fraction;
+                        (area, theory.mean_pressure(area))
+                    }
+                    Given::Pressure => {
+                        let pressure = row.pressure_mpa.mpa_to_pa();
+                        (theory.contact_area_fraction(pressure), pressure)
+                    }
+                };
+                (area, pressure, theory.friction_coefficient(pressure))
             })
         }
         Theory::KlueppelHeinrich => {
             let (heights, ratio) = (heights(surface), constants.klueppel_heinrich_layer_ratio);
             let theory = KlueppelHeinrich::new(&scales, &heights, rubber, speed, ratio)?;
-            Box::new(move |area| (theory.mean_pressure(area), theory.friction_coefficient()))
+            Box::new(move |row| {
+                let (area, pressure) = match row.given {
+                    Given::Area => {
+                        let area = row.contact_area_fraction;
+                        (area, theory.mean_pressure(area))
+                    }
+                    Given::Pressure => {
+                        let pressure = row.pressure_mpa.mpa_to_pa();
+                        (theory.contact_area_fraction(pressure), pressure)
+                    }
+                };
+                (area, pressure, theory.friction_coefficient())
+            })
         }
     })
 }
