@@ -1,9 +1,8 @@
 //! `asperity compare`: which of two runs has more friction.
 
-use super::CliError;
-use super::output::{json, note, print, significant, write_file};
+use super::output::{json, note, print, significant};
 use super::run_folder;
-use asperity::plot::png;
+use super::{CliError, figure_file};
 use asperity::report::{Compared, Pairing, compare};
 use asperity::text::visible_line;
 use clap::Args;
@@ -65,18 +64,7 @@ impl Compare {
             let figure = compared
                 .figure([&names[0], &names[1]])
                 .ok_or_else(|| CliError::failure("there is nothing to draw".to_owned()))?;
-            let svg = figure.svg()?;
-            let bytes = match path.extension().and_then(|ending| ending.to_str()) {
-                Some("svg") => svg.into_bytes(),
-                Some("png") => png(&svg).map_err(CliError::failure)?,
-                _ => {
-                    return Err(CliError::input(format!(
-                        "{}: figures are .svg or .png files",
-                        path.display()
-                    )));
-                }
-            };
-            write_file(path, self.force, |out| std::io::Write::write_all(out, &bytes))?;
+            figure_file::write(path, self.force, &figure)?;
         }
         print(&if self.json { json(&compared)? } else { text(&compared, &names) })
     }

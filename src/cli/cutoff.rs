@@ -1,13 +1,12 @@
 //! `asperity cutoff`: friction over the shortest wavelength.
 
 use super::interrupt::Interrupt;
-use super::output::{json, note, print, significant, write_file};
+use super::output::{json, note, print, significant};
 use super::progress::Spinner;
 use super::recipe_options::RecipeOptions;
-use super::{CliError, threads, values};
+use super::{CliError, figure_file, threads, values};
 use asperity::cutoff::{Cutoff, study};
 use asperity::pipeline::Event;
-use asperity::plot::png;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -69,16 +68,7 @@ impl CutoffCommand {
             let figure = found
                 .figure()
                 .ok_or_else(|| CliError::failure("there is nothing to draw".to_owned()))?;
-            let svg = figure.svg()?;
-            let bytes = match path.extension().and_then(|ending| ending.to_str()) {
-                Some("svg") => svg.into_bytes(),
-                Some("png") => png(&svg).map_err(CliError::failure)?,
-                _ => {
-                    let path = path.display();
-                    return Err(CliError::input(format!("{path}: figures are .svg or .png files")));
-                }
-            };
-            write_file(path, self.force, |out| std::io::Write::write_all(out, &bytes))?;
+            figure_file::write(path, self.force, &figure)?;
         }
         print(&if self.json { json(&found)? } else { text(&found) })?;
         note(quiet, format_args!("runs in {}", out.display()));

@@ -10,6 +10,7 @@
 //! | `cutoff` | friction over the shortest wavelength |
 //! | `error` | errors with their exit codes |
 //! | `export` | friction tables for people and other programs |
+//! | `figure_file` | figures as files, SVG or PNG |
 //! | `init` | a folder to start in |
 //! | `inspect` | what is in a file or folder |
 //! | `interrupt` | Ctrl-C, and the signal by which a scheduler ends a job, for commands that have something to clean up; the others simply end |
@@ -37,6 +38,7 @@ mod convert;
 mod cutoff;
 mod error;
 mod export;
+mod figure_file;
 mod init;
 mod inspect;
 mod interrupt;

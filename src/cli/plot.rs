@@ -1,11 +1,10 @@
 //! `asperity plot`: single figures of a run.
 
-use super::CliError;
 use super::last_run::LastRun;
-use super::output::{aligned, note, print, write_file};
+use super::output::{aligned, note, print};
 use super::run_folder;
 use super::values::meant;
-use asperity::plot::png;
+use super::{CliError, figure_file};
 use asperity::report::figures::{ALL, Kind};
 use asperity::sweep;
 use clap::Args;
@@ -59,7 +58,9 @@ impl Plot {
                 meant(name, &names)
             )));
         };
-        let as_png = self.wants_png()?;
+        if let Some(path) = &self.to {
+            figure_file::is_png(path)?;
+        }
         let of_sweep = kind.name == "speed" && run.join(sweep::CASES_FOLDER).is_dir();
         let view = if of_sweep { run_folder::view(run)? } else { run_folder::view_of_case(run)? };
         let figure = if of_sweep {
@@ -75,21 +76,9 @@ impl Plot {
         for (_, doubt) in doubts.iter().filter(|(stage, _)| kind.stages.contains(stage)) {
             note(quiet, format_args!("warning: {doubt}"));
         }
-        let svg = figure.svg()?;
-        let Some(path) = &self.to else { return print(&svg) };
-        let bytes = if as_png { png(&svg).map_err(CliError::failure)? } else { svg.into_bytes() };
-        write_file(path, self.force, |out| out.write_all(&bytes))
-    }
-
-    /// The format, by the ending of the file.
-    fn wants_png(&self) -> Result<bool, CliError> {
-        let Some(path) = &self.to else { return Ok(false) };
-        match path.extension().and_then(|ending| ending.to_str()) {
-            Some("svg") => Ok(false),
-            Some("png") => Ok(true),
-            _ => {
-                Err(CliError::input(format!("{}: figures are .svg or .png files", path.display())))
-            }
+        match &self.to {
+            None => print(&figure.svg()?),
+            Some(path) => figure_file::write(path, self.force, &figure),
         }
     }
 }

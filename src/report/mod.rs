@@ -5,6 +5,7 @@
 //! | `compare` | which of two runs has more friction |
 //! | `figures` | the figures of a run, each made of its results alone |
 //! | `html` | the report of a run: one HTML document that needs nothing else |
+//! | `long_tables` | friction tables for other programs: all digits, every realisation |
 //! | `read` | what figures and reports read of a run |
 //! | `sinusoid` | the study of one sine wave as Markdown |
 //! | `spreadsheet` | friction tables as a workbook |
@@ -13,6 +14,7 @@
 mod compare;
 pub mod figures;
 pub mod html;
+mod long_tables;
 mod read;
 mod sinusoid;
 mod spreadsheet;
@@ -20,10 +22,8 @@ mod tables;
 
 pub use compare::{Compared, Difference, Pairing, compare};
 pub use figures::{friction_figure, rubber_fit_figure, study_figure};
+pub use long_tables::{long_table, values_table};
 pub use read::ReportError;
 pub use sinusoid::Study;
 pub use spreadsheet::workbook;
-pub use tables::{
-    About, FrictionTable, comparison_markdown, friction_tables, latex, long_table, markdown,
-    values_table,
-};
+pub use tables::{About, FrictionTable, comparison_markdown, friction_tables, latex, markdown};

@@ -244,7 +244,7 @@ fn heading(kind: SurfaceKind, speed_mm_s: f64) -> String {
     format!("{kind}, {speed_mm_s} mm/s")
 }
 
-/// The same with the shortest wavelength and the rubber, without which friction is no number.
+/// Heading of a friction table with its shortest wavelength and rubber, on which friction depends.
 fn full_heading(row: &FrictionRow, about: &About) -> String {
     let shortest = significant(row.shortest_wavelength_mm);
     format!("{} from {shortest} mm, {} mm/s, {}", row.kind, row.speed_mm_s, about.material())

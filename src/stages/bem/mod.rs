@@ -10,7 +10,7 @@
 //! | `scans` | what the choice of scans does to friction of sines |
 //! | `speeds` | sliding speeds of a recipe: a list, or a range |
 //! | `task` | one curve as a task of a sweep, which any machine can solve |
-//! | `wanted` | what friction is wanted at: contact areas, pressures |
+//! | `wanted` | contact areas and pressures at which a recipe asks for friction |
 //! | `work` | the curves of all ensembles: those that are missing, solved side by side |
 
 mod attainable;

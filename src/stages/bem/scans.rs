@@ -64,7 +64,7 @@ pub struct Replicate {
     pub surfaces: Vec<Surface>,
 }
 
-/// The replicates of all approximations; none where the recipe has no scans, or does not ask for them.
+/// The replicates of all approximations. Empty if the recipe has no scans or sets `bem.estimate_scan_error` to false.
 ///
 /// # Errors
 /// Those of the store.

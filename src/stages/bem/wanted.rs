@@ -1,4 +1,4 @@
-//! What friction is wanted at: contact area fractions, mean pressures, or both.
+//! The contact area fractions and mean pressures at which a recipe asks for friction.
 
 use super::Bem;
 use crate::requirement::{InvalidRecipe, require};
@@ -39,7 +39,7 @@ impl Given {
     }
 }
 
-/// The values that friction is wanted at.
+/// Contact area fractions and mean pressures at which a recipe asks for friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
     /// Contact area fractions, ascending.
@@ -66,7 +66,7 @@ impl Wanted {
 const PRESSURES_MPA: std::ops::RangeInclusive<f64> = 1e-9..=1e6;
 
 impl Bem {
-    /// The values that friction is wanted at.
+    /// Contact area fractions and mean pressures at which a recipe asks for friction.
     pub fn wanted(&self) -> Wanted {
         let Self { area_fractions, pressures_mpa, .. } = self.clone();
         Wanted { area_fractions, pressures_mpa }

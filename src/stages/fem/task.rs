@@ -33,7 +33,7 @@ pub struct Task {
 pub struct Sweep {
     /// Mesh and steps of pressure.
     pub fem: Fem,
-    /// What friction is wanted at.
+    /// Contact areas and pressures at which the recipe asks for friction.
     pub wanted: Wanted,
 }
 

@@ -12,29 +12,28 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `rows` | the tables of the stage |
+//! | `sampled` | samples and laws of the microscales |
 //! | `stretches` | one value from those by several stretches of the microscale |
 
 mod rows;
+mod sampled;
 mod stretches;
 
 use super::bem::{CURVES, CurveRow};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::micro::{
-    LAW, LawRow, Micro, Parting, SAMPLES, SampleRow, between_samples, law_of, partings,
-};
-use super::realise::{SURFACES, Surface, SurfaceKind, read_surfaces};
+use super::micro::{LAW, Micro, Parting, SAMPLES, partings};
+use super::realise::{SURFACES, Surface, read_surfaces};
 use super::{SolveError, Stage, StageError};
 use crate::artifact::RunView;
 use crate::multiscale::correction::{CorrectionRule, MeanRule, Microscale, running_mean};
-use crate::multiscale::{
-    LawEnd, LawError, LocalLaw, SoftContact, SoftContactError, SoftContactSolution,
-};
+use crate::multiscale::{LawError, SoftContact, SoftContactError, SoftContactSolution};
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
 use crate::surface::Wave;
 use crate::units::Units;
 use rayon::prelude::*;
 pub use rows::{HYBRID, HybridRow, LOCAL, LocalRow, schemas};
+use sampled::{Data, Sampled, microscale};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -103,13 +102,6 @@ pub enum RepulsiveLaw {
     HalfSpace,
     /// Finite deformation, as far as it was sampled and the separation falls.
     FiniteDeformation,
-}
-
-/// What all curves read.
-struct Data {
-    curves: Vec<CurveRow>,
-    samples: Vec<SampleRow>,
-    laws: Vec<LawRow>,
 }
 
 /// Corrects the curves of the half-space and writes them; returns warnings.
@@ -266,103 +258,35 @@ fn by_one_microscale(
     let (period, cell) = (*period, *cell);
     let (microscale, law, full_contact) = microscale(parameters, own)?;
     let (mut rows, mut locals) = (Vec::new(), Vec::new());
-    {
-        let speed = at_one_speed[0].speed_mm_s.mm_to_m();
-        let mut contact =
-            SoftContact::new_interruptible(rubber, speed, period, heights, law, interrupt)?;
-        for curve in at_one_speed {
-            let solution = match contact.solve(curve.pressure_mpa.mpa_to_pa()) {
-                Ok(solution) => solution,
-                // Pressed harder than the law goes: no correction, and no end of the others.
-                Err(SoftContactError::Law {
-                    source: LawError::BeyondSamples { pressure, largest },
-                    ..
-                }) => {
-                    rows.push(beyond(curve, pressure, largest));
-                    continue;
-                }
-                Err(error) => return Err(error.into()),
-            };
-            let local = match parameters.local_pressures {
-                LocalPressures::Points => solution.pressure.clone(),
-                LocalPressures::Periods => {
-                    let points = cell / period * solution.pressure.len() as f64;
-                    running_mean(&solution.pressure, points.round() as usize)
-                }
-            };
-            let residual = solution.residual;
-            rows.push(corrected(parameters, curve, &microscale, full_contact, &local, residual));
-            let stretch = own.samples[0].stretch;
-            locals.extend(local_rows(curve, stretch, &microscale, &solution, period, cell));
-        }
+    let speed = at_one_speed[0].speed_mm_s.mm_to_m();
+    let mut contact =
+        SoftContact::new_interruptible(rubber, speed, period, heights, law, interrupt)?;
+    for curve in at_one_speed {
+        let solution = match contact.solve(curve.pressure_mpa.mpa_to_pa()) {
+            Ok(solution) => solution,
+            // Pressed harder than the law goes: no correction, and no end of the others.
+            Err(SoftContactError::Law {
+                source: LawError::BeyondSamples { pressure, largest },
+                ..
+            }) => {
+                rows.push(beyond(curve, pressure, largest));
+                continue;
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let local = match parameters.local_pressures {
+            LocalPressures::Points => solution.pressure.clone(),
+            LocalPressures::Periods => {
+                let points = cell / period * solution.pressure.len() as f64;
+                running_mean(&solution.pressure, points.round() as usize)
+            }
+        };
+        let residual = solution.residual;
+        rows.push(corrected(parameters, curve, &microscale, full_contact, &local, residual));
+        let stretch = own.samples[0].stretch;
+        locals.extend(local_rows(curve, stretch, &microscale, &solution, period, cell));
     }
     Ok((rows, locals))
-}
-
-/// One microscale at one speed: samples, one or more, and law.
-struct Sampled<'a> {
-    samples: Vec<&'a SampleRow>,
-    laws: Vec<LawRow>,
-}
-
-impl Data {
-    /// Numbers of the stretches of a surface at a speed that have samples; 0 is the microscale of sines.
-    fn stretches(&self, surface: &Surface, speed_mm_s: f64) -> Vec<u32> {
-        let own = |row: &&SampleRow| {
-            is_sampled(surface, speed_mm_s, (row.kind, row.realisation, row.speed_mm_s))
-        };
-        let mut numbers: Vec<u32> =
-            self.samples.iter().filter(own).map(|row| row.stretch).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers
-    }
-
-    fn of(&self, surface: &Surface, speed_mm_s: f64, stretch: u32) -> Sampled<'_> {
-        let sample = |row: &&SampleRow| {
-            row.stretch == stretch
-                && is_sampled(surface, speed_mm_s, (row.kind, row.realisation, row.speed_mm_s))
-        };
-        let law = |row: &&LawRow| {
-            row.stretch == stretch
-                && is_sampled(surface, speed_mm_s, (row.kind, row.realisation, row.speed_mm_s))
-        };
-        Sampled {
-            samples: self.samples.iter().filter(sample).collect(),
-            laws: self.laws.iter().filter(law).cloned().collect(),
-        }
-    }
-}
-
-/// Whether a row of a kind, realisation and speed is of the microscale of a surface at a speed.
-fn is_sampled(surface: &Surface, speed_mm_s: f64, row: (SurfaceKind, u32, f64)) -> bool {
-    let (kind, realisation, speed) = row;
-    kind == surface.kind && [0, surface.realisation].contains(&realisation) && speed == speed_mm_s
-}
-
-/// Friction of a microscale between its samples, the law that its macro surface meets and the pressure in Pa of its
-/// full contact on the half-space.
-fn microscale(
-    parameters: &Hybrid,
-    own: &Sampled,
-) -> Result<(Microscale, LocalLaw, f64), SolveError> {
-    let Sampled { samples, laws: rows } = own;
-    let column = |value: fn(&SampleRow) -> f64| samples.iter().map(|row| value(row)).collect();
-    let pressures: Vec<f64> = column(|row| row.pressure_mpa.mpa_to_pa());
-    let law = match parameters.law {
-        RepulsiveLaw::HalfSpace => law_of(rows)?,
-        RepulsiveLaw::FiniteDeformation => {
-            let separations: Vec<f64> =
-                column(|row| row.separation_finite_deformation_mm.mm_to_m());
-            let falling = 1 + separations.windows(2).take_while(|pair| pair[1] < pair[0]).count();
-            let touch = rows.first().map_or(0.0, |row| row.touch_separation_m);
-            let end = LawEnd::PartialContact;
-            LocalLaw::new(touch, &pressures[..falling], &separations[..falling], end)?
-        }
-    };
-    let microscale = between_samples(samples);
-    let full_contact = rows.iter().map(|row| row.pressure_pa).fold(0.0, f64::max);
-    Ok((microscale, law, full_contact))
 }
 
 fn corrected(
@@ -485,6 +409,7 @@ fn local_rows(
 mod tests {
     use super::*;
     use crate::stages::bem::Given;
+    use crate::stages::realise::SurfaceKind;
 
     #[test]
     fn the_share_of_the_load_beyond_full_contact_is_weighted_by_pressure_and_warned_of() {

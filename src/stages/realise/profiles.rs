@@ -116,48 +116,12 @@ pub(super) fn of_windows(
                 .into(),
         );
     }
-    let seed = parameters.seed.unwrap_or_default();
-    let draws = parameters.drawn() as usize;
-    let mut wanted: Vec<(Method, usize)> = Vec::new();
-    for method in &parameters.methods {
-        match method {
-            Method::Sines | Method::MeasuredBackward => {}
-            Method::Measured => {
-                for direction in &parameters.directions {
-                    let method = match direction {
-                        Direction::Forward => Method::Measured,
-                        Direction::Backward => Method::MeasuredBackward,
-                    };
-                    wanted.extend((0..profiles.len()).map(|k| (method, k)));
-                }
-            }
-            drawn => wanted.extend((0..draws).map(|k| (*drawn, k))),
-        }
-    }
-    let made: Vec<(Surface, ProfileRow)> = wanted
+    let made: Vec<(Surface, ProfileRow)> = surfaces_to_make(parameters, profiles.len())
         .par_iter()
         .map(|&(method, k)| {
             let (window, points, profile) = &profiles[k % profiles.len()];
-            let realisation = k as u32 + 1;
-            let (waves, mismatch) = match method {
-                Method::Matched => {
-                    let found =
-                        matched(&profile.waves, profile.period, seed, u64::from(realisation));
-                    (found.waves, Some(found.mismatch))
-                }
-                Method::RandomPhase => {
-                    let scale = |wave: &Wave| SineScale {
-                        wavelength: wave.wavelength,
-                        amplitude: wave.amplitude,
-                    };
-                    let scales: Vec<SineScale> = profile.waves.iter().map(scale).collect();
-                    (random_phases(&scales, seed, u64::from(realisation)), None)
-                }
-                Method::MeasuredBackward => (profile.reversed().waves, None),
-                Method::Measured | Method::Sines => (profile.waves.clone(), None),
-            };
-            let kind = SurfaceKind::of(method);
-            let surface = Surface { kind, realisation, profile: waves };
+            let seed = parameters.seed.unwrap_or_default();
+            let (surface, mismatch) = surface(method, profile, seed, k as u32 + 1);
             let row = row(&surface, window, *points, profile, mismatch);
             (surface, row)
         })
@@ -172,6 +136,52 @@ pub(super) fn of_windows(
     }
     let (surfaces, rows) = made.into_iter().unzip();
     Ok((surfaces, rows, warnings))
+}
+
+/// Every surface by its method and its number from 0: one of each window and direction, or as many as are drawn.
+fn surfaces_to_make(parameters: &Realise, windows: usize) -> Vec<(Method, usize)> {
+    let draws = parameters.drawn() as usize;
+    let mut found = Vec::new();
+    for method in &parameters.methods {
+        match method {
+            Method::Sines | Method::MeasuredBackward => {}
+            Method::Measured => {
+                for direction in &parameters.directions {
+                    let method = match direction {
+                        Direction::Forward => Method::Measured,
+                        Direction::Backward => Method::MeasuredBackward,
+                    };
+                    found.extend((0..windows).map(|k| (method, k)));
+                }
+            }
+            drawn => found.extend((0..draws).map(|k| (*drawn, k))),
+        }
+    }
+    found
+}
+
+/// A surface of a window, and how far its heights are from those of the window where they are matched.
+fn surface(
+    method: Method,
+    profile: &PeriodicProfile,
+    seed: u64,
+    realisation: u32,
+) -> (Surface, Option<f64>) {
+    let (waves, mismatch) = match method {
+        Method::Matched => {
+            let found = matched(&profile.waves, profile.period, seed, u64::from(realisation));
+            (found.waves, Some(found.mismatch))
+        }
+        Method::RandomPhase => {
+            let scale =
+                |wave: &Wave| SineScale { wavelength: wave.wavelength, amplitude: wave.amplitude };
+            let scales: Vec<SineScale> = profile.waves.iter().map(scale).collect();
+            (random_phases(&scales, seed, u64::from(realisation)), None)
+        }
+        Method::MeasuredBackward => (profile.reversed().waves, None),
+        Method::Measured | Method::Sines => (profile.waves.clone(), None),
+    };
+    (Surface { kind: SurfaceKind::of(method), realisation, profile: waves }, mismatch)
 }
 
 /// Heights that differ by more than this share of their root mean square are not those of the window.
