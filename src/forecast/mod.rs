@@ -31,9 +31,7 @@ use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages;
-use crate::stages::bem::{
-    self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, realisations_needed,
-};
+use crate::stages::bem::{self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, Worth};
 use crate::stages::ingest::read_windows;
 use crate::stages::micro::Parting;
 use crate::stages::realise::SurfaceKind;
@@ -352,7 +350,9 @@ impl Trial {
             .by_curve()
             .filter(|curve| (curve[0].kind, curve[0].speed_mm_s) == (kind, speed_mm_s))
             .collect();
-        let needed = realisations_needed(&family, tolerance).unwrap_or(0).max(family.len());
+        // The trial has one window, so what the scans are worth is not known: an upper bound.
+        let needed = Worth::UNLIMITED.realisations_needed(&family, tolerance).unwrap_or(0);
+        let needed = needed.max(family.len());
         drawn.min(u32::try_from(needed).unwrap_or(u32::MAX))
     }
 }

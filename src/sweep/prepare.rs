@@ -165,8 +165,8 @@ impl Prepared {
         let silent = Watch { progress: &|_, _| (), interrupted: watch.interrupted };
         let wanted = |task: Task| Wanted::new(number, task, solvers, rubber);
         let view = RunView::of(self.layout.surfaces(case));
-        let replicates = bem::replicates(&solvers.bem, surfaces, &view)?;
-        let curves = bem::missing(&solvers.bem, rubber, surfaces, &replicates, store, silent)?;
+        let scans = bem::Scans::read(&solvers.bem, surfaces, &view)?;
+        let curves = bem::missing(&solvers.bem, rubber, surfaces, &scans, store, silent)?;
         let (micro, fem) = (case.recipe.micro.is_some(), case.recipe.fem.is_some());
         let multilevel = case.recipe.multilevel.is_some();
         if !curves.is_empty() || !(micro || fem || multilevel) {

@@ -3,7 +3,7 @@
 use super::{Campaign, recipe, run};
 use asperity::artifact::RunView;
 use asperity::contact::SlidingContact;
-use asperity::numerics::statistics::MeanEstimate;
+use asperity::numerics::statistics::{MeanEstimate, combined_95};
 use asperity::recipe::Recipe;
 use asperity::rubber::read_rubber;
 use asperity::stages::bem::{CURVES, CurveRow, FIELDS, REALISATIONS, SOLVES, SolveRow};
@@ -169,8 +169,9 @@ fn a_wanted_accuracy_refines_the_grids_and_is_kept() {
     let rows = view.rows(FRICTION).unwrap();
     for row in &rows {
         let parts = row.confidence_95.unwrap() + row.interpolation_error;
-        // Phases and scans are independent; grid and interpolation are what they are.
-        let statistical = row.confidence_95.unwrap().hypot(row.scan_error.unwrap());
+        // Two realisations and three windows, independent of each other; grid and interpolation are what they are.
+        let statistical =
+            combined_95(&[(row.confidence_95.unwrap(), 1.0), (row.scan_error.unwrap(), 2.0)]);
         let sum = statistical + row.interpolation_error + row.discretisation_error.unwrap();
         approx::assert_relative_eq!(row.error_estimate.unwrap(), sum, max_relative = 1e-12);
         assert!(row.error_estimate.unwrap() > parts);

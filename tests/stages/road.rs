@@ -2,6 +2,7 @@
 
 use super::{Campaign, recipe, run, try_run};
 use asperity::artifact::RunView;
+use asperity::numerics::statistics::combined_95;
 use asperity::pipeline::Selection;
 use asperity::recipe::Recipe;
 use asperity::stages::bem::{CURVES, Given, SCAN_ERRORS};
@@ -9,6 +10,7 @@ use asperity::stages::hybrid::HYBRID;
 use asperity::stages::micro::SAMPLES;
 use asperity::stages::realise::{Method, PROFILES, SurfaceKind, read_surfaces};
 use asperity::stages::tables::{BUDGET, FRICTION, FrictionRow, METHODS, Model, Part};
+use rayon::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -340,20 +342,21 @@ fn s100(shared: &Path) -> String {
     campaign.read("fitted.toml")
 }
 
-/// Two hundred small roads of their own, six windows each: the interval of sines, by phases and by scans, against the mean
-/// over all of them. It holds it in 85 of 100, where 93 to 97 are wanted: what is missing is not known yet, and this test keeps
-/// the state that the pages tell.
+/// Two hundred small roads of their own, six windows of three times the longest wave each: the interval of sines, by phases and
+/// by scans, against the mean over all of them.
 #[test]
-#[ignore = "200 runs with 18 curves each: .ci/full"]
-fn the_interval_of_sines_holds_the_mean_of_the_road_less_often_than_it_says() {
+#[ignore = "200 runs with 26 curves each: .ci/full"]
+fn the_interval_of_sines_holds_the_mean_of_the_road_as_often_as_it_says() {
     use asperity::surface::SineScale;
     use asperity::surface::realisation::random_phases;
     const SPECIMENS: u64 = 200;
-    let scales: Vec<SineScale> = (1..=128)
+    const WINDOW_POINTS: u32 = 960;
+    let scales: Vec<SineScale> = (1..=384)
         .rev()
         .map(|k| {
-            let wavelength = 32e-3 / f64::from(k);
-            SineScale { wavelength, amplitude: 0.012 * wavelength * f64::from(k).powf(-0.2) }
+            let wavelength = 96e-3 / f64::from(k);
+            let share = f64::from(k) / 3.0;
+            SineScale { wavelength, amplitude: 0.007 * wavelength * share.powf(-0.2) }
         })
         .collect();
     let run_of = |seed: u64| -> (f64, f64) {
@@ -364,7 +367,7 @@ fn the_interval_of_sines_holds_the_mean_of_the_road_less_often_than_it_says() {
         for window in 0..6 {
             let road = random_phases(&scales, seed, window);
             let mut text = String::from("x_mm;z_um\n");
-            for i in 0..320 {
+            for i in 0..WINDOW_POINTS {
                 let x = 25e-6 * f64::from(i);
                 let height: f64 = road.iter().map(|wave| wave.height(x)).sum();
                 writeln!(text, "{:.3};{:.4}", 1e3 * x, 1e6 * height).unwrap();
@@ -373,19 +376,23 @@ fn the_interval_of_sines_holds_the_mean_of_the_road_less_often_than_it_says() {
         }
         campaign.edit("recipe.toml", "seed = 1", &format!("seed = {seed}"));
         campaign.edit("recipe.toml", "realisations = 2", "realisations = 6");
+        campaign.edit("recipe.toml", "waves = [2, 3]", "waves = [5]");
+        campaign.edit("recipe.toml", "waves = [3]", "waves = [5]");
         let wanted = "area_fractions = []\npressures_mpa = [0.2]";
         campaign.edit("recipe.toml", "area_fractions = [0.02, 0.05, 0.1]", wanted);
         let out = campaign.path("out");
         run(&recipe(&campaign), &out);
         let row = RunView::of(&out).rows(FRICTION).unwrap().remove(0);
-        (row.mean, row.confidence_95.unwrap().hypot(row.scan_error.unwrap()))
+        // The errors by interpolation and by the grid are a few thousandths of these.
+        let parts = [(row.confidence_95.unwrap(), 5.0), (row.scan_error.unwrap(), 5.0)];
+        (row.mean, combined_95(&parts))
     };
-    let found: Vec<(f64, f64)> = (1..=SPECIMENS).map(run_of).collect();
+    let found: Vec<(f64, f64)> = (1..=SPECIMENS).into_par_iter().map(run_of).collect();
     let truth = found.iter().map(|(mean, _)| mean).sum::<f64>() / SPECIMENS as f64;
     let held = found.iter().filter(|(mean, half)| (mean - truth).abs() <= *half).count();
     let share = held as f64 / SPECIMENS as f64;
     println!("{share}");
-    assert!((0.80..=0.90).contains(&share), "{share}");
+    assert!((0.93..=0.97).contains(&share), "{share}");
 }
 
 /// Three disjoint thirds of the bundled specimen, whose friction differed by twice their combined intervals as long as only

@@ -8,7 +8,7 @@ use super::characterise::{
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::{Stage, StageError};
 use crate::artifact::{Metadata, RunView};
-use crate::numerics::statistics::jackknife_95;
+use crate::numerics::statistics::{balanced_halves, jackknife_95};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::SineScale;
 use crate::surface::correlation::CorrelationSample;
@@ -26,7 +26,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 4;
+pub const REVISION: u32 = 5;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -214,9 +214,9 @@ pub fn run(
     Ok(warnings)
 }
 
-/// Groups of windows that are left out in turn, for the error of friction by the choice of scans: enough for an interval,
-/// and few enough to be solved.
-const GROUPS: usize = 6;
+/// Groups of windows of which halves are left out in turn, for the error of friction by the choice of scans: enough for an
+/// interval, and few enough to be solved.
+pub(crate) const GROUPS: usize = 6;
 
 /// Lags below this share of the shortest wave tell of roughness that no wave stands for.
 const SHORTEST_LAG: f64 = 1.0 / 16.0;
@@ -313,7 +313,7 @@ impl Correlations {
         let replicates: Vec<Vec<f64>> = (0..n)
             .into_par_iter()
             .map(|left_out| {
-                let without = self.without(left_out..left_out + 1);
+                let without = self.without(&[left_out]);
                 let fit = fit_sines_by(rule, &without, wavelengths)?;
                 Ok(fit.sine_scales().iter().map(|scale| scale.amplitude).collect())
             })
@@ -323,8 +323,8 @@ impl Correlations {
         Ok((0..fit.scales.len()).map(|i| Some(half_width(i))).collect())
     }
 
-    /// The fits without each of a few groups of windows; none of a single window. Neighbouring windows, which are of one
-    /// scan, are left out together.
+    /// The fits without the halves of a few groups of windows in turn; none of a single window. Neighbouring windows,
+    /// which are of one scan, are left out together.
     fn replicates(
         &self,
         rule: FitRule,
@@ -336,14 +336,17 @@ impl Correlations {
         if groups < 2 {
             return Ok(Vec::new());
         }
-        let fits: Vec<Vec<ReplicateRow>> = (0..groups)
+        let fits: Vec<Vec<ReplicateRow>> = balanced_halves(groups)
             .into_par_iter()
-            .map(|group| {
-                let own = group * count / groups..(group + 1) * count / groups;
-                let fit = fit_sines_by(rule, &self.without(own), wavelengths)?;
+            .enumerate()
+            .map(|(replicate, half)| {
+                let of_half = |window: &usize| half.contains(&(window * groups / count));
+                let left_out: Vec<usize> = (0..count).filter(of_half).collect();
+                let fit = fit_sines_by(rule, &self.without(&left_out), wavelengths)?;
                 let row = |(number, scale): (u32, SineScale)| ReplicateRow {
                     waves,
-                    group: group as u32 + 1,
+                    replicate: replicate as u32 + 1,
+                    groups: groups as u32,
                     scale: number,
                     amplitude_mm: scale.amplitude.m_to_mm(),
                 };
@@ -354,13 +357,14 @@ impl Correlations {
     }
 
     /// The average without some windows: their sums are taken off those of all.
-    fn without(&self, left_out: std::ops::Range<usize>) -> Vec<CorrelationSample> {
+    fn without(&self, left_out: &[usize]) -> Vec<CorrelationSample> {
         let rest = |sample: &CorrelationSample| {
             let of_lag = |window: &Vec<CorrelationSample>| {
                 window.iter().find(|other| other.lag == sample.lag).copied()
             };
             let (mut pairs, mut sum) = (sample.pairs, sample.value * sample.pairs as f64);
-            for gone in self.windows[left_out.clone()].iter().filter_map(of_lag) {
+            let windows = left_out.iter().map(|&window| &self.windows[window]);
+            for gone in windows.filter_map(of_lag) {
                 pairs = pairs.checked_sub(gone.pairs)?;
                 sum -= gone.value * gone.pairs as f64;
             }

@@ -41,16 +41,19 @@ impl Row for ScaleRow {
     const VERSION: u32 = 1;
 }
 
-/// The amplitudes of the fits without each group of windows: `replicates.arrow`.
+/// The amplitudes of the fits without halves of the windows: `replicates.arrow`.
 pub const REPLICATES: Table<ReplicateRow> = Table::new("approximate", "replicates.arrow");
 
-/// One sine of a fit to the scans without one group of windows.
+/// One sine of a fit to the scans without half of the groups of windows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReplicateRow {
     /// Number of waves asked for.
     pub waves: u32,
-    /// Number of the group that is left out, from 1.
-    pub group: u32,
+    /// Number of the half that is left out, from 1, in the order of
+    /// [`balanced_halves`](crate::numerics::statistics::balanced_halves).
+    pub replicate: u32,
+    /// Groups that the windows are divided into, neighbours together.
+    pub groups: u32,
     /// Number of this wave, from the shortest, starting at 1.
     pub scale: u32,
     /// Amplitude, not negative.
@@ -60,7 +63,7 @@ pub struct ReplicateRow {
 
 impl Row for ReplicateRow {
     const SCHEMA: &'static str = "asperity.approximate.replicates";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// How good a fit is.

@@ -1,9 +1,8 @@
 //! The curves of one approximation at one speed, of as many realisations as their average needs.
 
 use super::reduction::LeftOut;
+use super::worth::Worth;
 use super::{CurveRow, FieldSolution, SolveRow};
-use crate::contact::refine::LEAST_FRICTION;
-use crate::numerics::statistics::MeanEstimate;
 use crate::stages::realise::Surface;
 
 /// Realisations from whose spread the number that is needed is judged first.
@@ -33,18 +32,32 @@ pub(super) struct Ensemble<'a> {
     pub with_all_waves: usize,
     /// What the others do without.
     pub left_out: LeftOut,
+    /// What more curves cannot mend.
+    worth: Worth,
 }
 
 impl<'a> Ensemble<'a> {
     /// All realisations of the surfaces, or the first ones if an accuracy of the average is asked for. Of measured windows
     /// all: which of them are left out must not depend on their order.
-    pub fn new(surfaces: &'a [Surface], speed_mm_s: f64, tolerance: Option<f64>) -> Self {
+    pub fn new(
+        surfaces: &'a [Surface],
+        speed_mm_s: f64,
+        tolerance: Option<f64>,
+        worth: Worth,
+    ) -> Self {
         let all = surfaces.len();
         let measured = surfaces.first().is_some_and(|surface| surface.kind.method.is_measured());
-        let wanted =
-            if tolerance.is_some() && !measured { all.min(FIRST_REALISATIONS) } else { all };
-        let left_out = LeftOut::default();
-        Self { speed_mm_s, surfaces, results: Vec::new(), wanted, with_all_waves: all, left_out }
+        let first = worth.whole_rounds(FIRST_REALISATIONS);
+        let wanted = if tolerance.is_some() && !measured { all.min(first) } else { all };
+        Self {
+            speed_mm_s,
+            surfaces,
+            results: Vec::new(),
+            wanted,
+            with_all_waves: all,
+            left_out: LeftOut::default(),
+            worth,
+        }
     }
 
     /// The surfaces whose curves are wanted and not solved.
@@ -71,36 +84,19 @@ impl<'a> Ensemble<'a> {
         let solved = self.results.len();
         let curves: Vec<&[CurveRow]> =
             self.results.iter().map(|result| &result.values[..]).collect();
-        let needed = realisations_needed(&curves, tolerance).unwrap_or(solved);
+        let needed = self.worth.realisations_needed(&curves, tolerance).unwrap_or(solved);
         if needed > solved {
             let least = solved + (LEAST_GROWTH * solved as f64).ceil() as usize;
-            self.wanted = needed.max(least).min(MOST_GROWTH * solved).min(self.surfaces.len());
+            let wanted = needed.max(least).min(MOST_GROWTH * solved);
+            self.wanted = self.worth.whole_rounds(wanted).min(self.surfaces.len());
         }
     }
-}
-
-/// Number of realisations for which the statistical error of the average, half the width of its 95 %
-/// interval, fits at every area into what the other errors leave of the relative `tolerance`. `curves` are
-/// those of the realisations so far, each at the same areas. None where it cannot be told: of one
-/// curve, or if the other errors leave nothing.
-pub(crate) fn realisations_needed(curves: &[&[CurveRow]], tolerance: f64) -> Option<usize> {
-    let areas = curves.first().map_or(0, |curve| curve.len());
-    let at_area = |k: usize| {
-        let friction: Vec<f64> = curves.iter().map(|curve| curve[k].friction_coefficient).collect();
-        let estimate = MeanEstimate::of(&friction);
-        let error = |row: &CurveRow| {
-            row.interpolation_error + row.discretisation_error.unwrap_or(0.0) + row.left_out_error
-        };
-        let others = curves.iter().map(|curve| error(&curve[k])).sum::<f64>() / curves.len() as f64;
-        estimate.count_for(tolerance * estimate.mean.abs().max(LEAST_FRICTION) - others)
-    };
-    let counts: Option<Vec<usize>> = (0..areas).map(at_area).collect();
-    counts?.into_iter().max()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numerics::statistics::MeanEstimate;
     use crate::stages::bem::Given;
     use crate::stages::realise::SurfaceKind;
     use crate::surface::SineScale;
@@ -122,22 +118,6 @@ mod tests {
         }
     }
 
-    fn needed(friction: &[f64], error: f64, tolerance: f64) -> Option<usize> {
-        let curves: Vec<[CurveRow; 1]> = friction.iter().map(|f| [row(*f, error)]).collect();
-        let curves: Vec<&[CurveRow]> = curves.iter().map(|curve| &curve[..]).collect();
-        realisations_needed(&curves, tolerance)
-    }
-
-    #[test]
-    fn the_number_follows_from_the_spread_and_what_is_left_of_the_tolerance() {
-        let friction = [0.9, 1.0, 1.1, 1.0];
-        let spread = MeanEstimate::of(&friction);
-        assert_eq!(needed(&friction, 0.0, 0.05), spread.count_for(0.05));
-        assert_eq!(needed(&friction, 0.03, 0.05), spread.count_for(0.02));
-        assert_eq!(needed(&friction, 0.05, 0.05), None);
-        assert_eq!(needed(&friction[..1], 0.0, 0.05), None);
-    }
-
     /// 95 of 100 intervals hold the true mean where the number is given beforehand. Here it follows
     /// from the same sample, which stops early when its spread is small by chance: a few less.
     #[test]
@@ -155,7 +135,7 @@ mod tests {
             let surface =
                 Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: Vec::new() };
             let surfaces = vec![surface; 5000];
-            let mut ensemble = Ensemble::new(&surfaces, 1.0, Some(0.1));
+            let mut ensemble = Ensemble::new(&surfaces, 1.0, Some(0.1), Worth::UNLIMITED);
             loop {
                 for k in ensemble.results.len()..count {
                     let values = vec![row(friction(k), 0.0)];

@@ -23,6 +23,7 @@ mod speeds;
 mod task;
 mod wanted;
 mod work;
+mod worth;
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::realise::{Surface, read_surfaces};
@@ -34,13 +35,13 @@ use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
 use crate::units::Units;
 pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
+pub(crate) use ensemble::FIRST_REALISATIONS;
 use ensemble::{CurveResult, Ensemble};
-pub(crate) use ensemble::{FIRST_REALISATIONS, realisations_needed};
 pub use rows::{
     CURVES, CurveRow, FIELDS, REALISATIONS, RealisationsRow, SOLVES, SolveRow, fields_schema,
     schemas,
 };
-pub use scans::{Replicate, SCAN_ERRORS, ScanErrorRow, replicates};
+pub use scans::{SCAN_ERRORS, ScanErrorRow, Scans};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -48,9 +49,10 @@ use std::path::{Path, PathBuf};
 pub use task::Task;
 pub use wanted::{Given, Wanted};
 use work::Work;
+pub(crate) use worth::{NEGLIGIBLE, Worth};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
-pub const REVISION: u32 = 5;
+pub const REVISION: u32 = 6;
 
 /// The stage.
 pub const STAGE: Stage = Stage(&CONTRACT);
@@ -71,10 +73,12 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     };
     let chain = request.chain()?;
     let scans = chain.ingest.is_some() && bem.estimate_scan_error;
+    let windows = bem.average_tolerance.is_some() && chain.realise.has_windows();
     Some(
         Planned::new(bem.resolved(material), run)
             .reading(super::realise::SURFACES)
-            .reading_if(scans, super::approximate::REPLICATES),
+            .reading_if(scans, super::approximate::REPLICATES)
+            .reading_if(windows, super::realise::PROFILES),
     )
 }
 
@@ -124,7 +128,7 @@ pub struct Bem {
     #[serde(default = "default_contact_points")]
     pub fewest_contact_points: u32,
     /// Whether sines are solved with the amplitudes of parts of the scans too, for the error of friction by the choice of
-    /// scans: twelve curves more for each number of waves and speed.
+    /// scans: up to twenty curves more for each number of waves and speed.
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub estimate_scan_error: bool,
     /// Contact area fractions at which pressure and separation are kept as fields; none by
@@ -236,12 +240,13 @@ pub fn run(
 ) -> Result<Vec<String>, StageError> {
     let surfaces = read_surfaces(run)?;
     require_for_all(parameters, &material.rubber, &surfaces, store, context.watch)?;
-    let mut ensembles = ensembles(parameters, &surfaces);
     let work = Work::new(parameters, &material.rubber, store, context.watch);
+    let scans = Scans::read(parameters, &surfaces, run)?;
+    let errors = scans::errors(parameters, &scans, &work)?;
+    let mut ensembles = ensembles(parameters, &surfaces, &scans, &errors);
     work.solve_all(&mut ensembles)?;
     write(&mut context.pending, &ensembles)?;
-    let replicates = replicates(parameters, &surfaces, run)?;
-    context.pending.write_rows(SCAN_ERRORS, &scans::errors(parameters, &replicates, &work)?)?;
+    context.pending.write_rows(SCAN_ERRORS, &errors)?;
     let mut warnings = material.oddities();
     warnings.extend(material.extrapolations(excited(parameters, &surfaces)));
     Ok(warnings)
@@ -256,14 +261,23 @@ pub fn missing(
     parameters: &Bem,
     rubber: &Rubber,
     surfaces: &[Surface],
-    replicates: &[Replicate],
+    scans: &Scans,
     store: &SolveStore,
     watch: Watch,
 ) -> Result<Vec<Task>, StageError> {
     require_for_all(parameters, rubber, surfaces, store, watch)?;
-    let mut ensembles = ensembles(parameters, surfaces);
-    let mut missing = Work::new(parameters, rubber, store, watch).missing(&mut ensembles)?;
-    missing.extend(scans::missing(parameters, rubber, replicates, store)?);
+    let work = Work::new(parameters, rubber, store, watch);
+    let mut missing = scans::missing(parameters, rubber, scans, store)?;
+    // What the scans are worth decides on more than the first realisations.
+    let known = missing.is_empty();
+    let decides = known && parameters.average_tolerance.is_some();
+    let errors = if decides { scans::errors(parameters, scans, &work)? } else { Vec::new() };
+    let mut ensembles = ensembles(parameters, surfaces, scans, &errors);
+    if known {
+        missing.extend(work.missing(&mut ensembles)?);
+    } else {
+        missing.extend(work.missing_of_open(&ensembles)?);
+    }
     Ok(missing)
 }
 
@@ -285,13 +299,21 @@ fn require_for_all(
     Ok(())
 }
 
-fn ensembles<'a>(parameters: &Bem, surfaces: &'a [Surface]) -> Vec<Ensemble<'a>> {
+fn ensembles<'a>(
+    parameters: &Bem,
+    surfaces: &'a [Surface],
+    scans: &Scans,
+    errors: &[ScanErrorRow],
+) -> Vec<Ensemble<'a>> {
     let tolerance = parameters.average_tolerance;
     surfaces
         .chunk_by(|a, b| a.kind == b.kind)
         .flat_map(|of_one| {
             let speeds = parameters.speeds_mm_s.iter();
-            speeds.map(move |speed| Ensemble::new(of_one, *speed, tolerance))
+            speeds.map(move |speed| {
+                let worth = scans.worth(of_one[0].kind, *speed, errors);
+                Ensemble::new(of_one, *speed, tolerance, worth)
+            })
         })
         .collect()
 }

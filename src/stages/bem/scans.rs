@@ -1,25 +1,29 @@
 //! What the choice of scans does to friction of sines: their amplitudes are those of a road of which only some windows were
 //! seen.
 //!
-//! The windows are parted into groups, `approximate` fits the sines without each of them, and the first realisations are
-//! solved with these amplitudes and their own phases. What friction changes by is the jackknife of the scans, without the
-//! scatter of phases. Surfaces of windows need none of it: the scatter of the road is that between them.
+//! The windows are parted into groups, `approximate` fits the sines without half of them, in up to ten ways, and the first
+//! realisations are solved with these amplitudes and their own phases. What friction changes by is the delete-d jackknife of
+//! the scans, without the scatter of phases. Halves change the amplitudes by as much as their error is. Single groups change
+//! them by less, and miss that an amplitude which is zero in the fit is not known to be zero. Surfaces of windows need none of
+//! it: the scatter of the road is that between them.
 
 use super::work::Work;
+use super::worth::Worth;
 use super::{Bem, CurveRow, Given, Task};
 use crate::artifact::{Row, RunView, SolveStore, Table};
-use crate::numerics::statistics::jackknife_95;
+use crate::numerics::statistics::delete_d_jackknife_95;
 use crate::rubber::Rubber;
 use crate::stages::StageError;
 use crate::stages::approximate::{REPLICATES, ReplicateRow};
 use crate::stages::kept::SolveTask;
-use crate::stages::realise::{Method, Surface, SurfaceKind};
+use crate::stages::realise::{Method, PROFILES, Surface, SurfaceKind};
 use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Realisations that are solved with the amplitudes without a group: what a group changes is much the same in all.
+/// Realisations that are solved with the amplitudes without half of the groups: what that changes is much the same in all.
 const REALISATIONS: usize = 2;
 
 /// Statistical error of friction by the choice of scans: `scans.arrow`.
@@ -42,70 +46,105 @@ pub struct ScanErrorRow {
     /// Mean pressure; of the first realisation where the area is given.
     #[schemars(extend("unit" = "MPa"))]
     pub pressure_mpa: f64,
-    /// Groups of windows that were left out in turn.
+    /// Groups of windows of which halves were left out in turn.
     pub groups: u32,
     /// Realisations that were solved without each.
     pub realisations: u32,
-    /// Half width of the 95 % confidence interval of the mean friction by the choice of scans: jackknife over the groups,
-    /// relative to the friction of these realisations.
+    /// Half width of the 95 % confidence interval of the mean friction by the choice of scans: delete-d jackknife over
+    /// halves of the groups, relative to the friction of these realisations.
     #[schemars(extend("unit" = "1"))]
     pub relative_confidence_95: f64,
 }
 
 impl Row for ScanErrorRow {
     const SCHEMA: &'static str = "asperity.bem.scans";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
-/// The first realisations of an approximation, with the amplitudes that the scans have without a group of windows.
+/// The first realisations of an approximation, with the amplitudes that the scans have without half of the windows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Replicate {
-    /// The surfaces.
-    pub surfaces: Vec<Surface>,
+struct Replicate {
+    /// Groups that the windows are divided into.
+    groups: usize,
+    surfaces: Vec<Surface>,
 }
 
-/// The replicates of all approximations. Empty if the recipe has no scans or sets `bem.estimate_scan_error` to false.
-///
-/// # Errors
-/// Those of the store.
-pub fn replicates(
-    parameters: &Bem,
-    surfaces: &[Surface],
-    run: &RunView,
-) -> Result<Vec<Replicate>, StageError> {
-    if !parameters.estimate_scan_error || !run.has(REPLICATES)? {
-        return Ok(Vec::new());
+/// What is known of the choice of scans before anything is solved.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Scans {
+    /// Of all approximations. None if the recipe has no scans or sets `bem.estimate_scan_error` to false.
+    replicates: Vec<Replicate>,
+    /// Windows that the surfaces of a kind are drawn of, where an accuracy of the averages is asked for.
+    windows: BTreeMap<SurfaceKind, usize>,
+}
+
+impl Scans {
+    /// Reads it from a run.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub fn read(parameters: &Bem, surfaces: &[Surface], run: &RunView) -> Result<Self, StageError> {
+        let replicates = if parameters.estimate_scan_error && run.has(REPLICATES)? {
+            replicates(surfaces, &run.rows(REPLICATES)?)
+        } else {
+            Vec::new()
+        };
+        let mut names: BTreeMap<SurfaceKind, BTreeSet<String>> = BTreeMap::new();
+        if parameters.average_tolerance.is_some()
+            && surfaces.iter().any(|surface| surface.kind.method.of_a_window())
+        {
+            for row in run.rows(PROFILES)? {
+                names.entry(row.kind).or_default().insert(row.window);
+            }
+        }
+        let windows = names.into_iter().map(|(kind, own)| (kind, own.len())).collect();
+        Ok(Self { replicates, windows })
     }
-    let rows = run.rows(REPLICATES)?;
+
+    /// What more realisations of a kind cannot mend at one speed.
+    pub(super) fn worth(
+        &self,
+        kind: SurfaceKind,
+        speed_mm_s: f64,
+        errors: &[ScanErrorRow],
+    ) -> Worth {
+        if let Some(&windows) = self.windows.get(&kind) {
+            return Worth::Windows(windows);
+        }
+        let own = errors.iter().filter(|row| row.kind == kind && row.speed_mm_s == speed_mm_s);
+        Worth::Errors(own.map(|row| row.relative_confidence_95).collect())
+    }
+}
+
+fn replicates(surfaces: &[Surface], rows: &[ReplicateRow]) -> Vec<Replicate> {
     let of_sines = surfaces.chunk_by(|a, b| a.kind == b.kind);
     let of_sines = of_sines.filter(|own| own[0].kind.method == Method::Sines);
-    let replicate = |own: &[Surface], group: &[ReplicateRow]| {
+    let replicate = |own: &[Surface], half: &[ReplicateRow]| {
         let surface = |surface: &Surface| {
             let mut surface = surface.clone();
-            for (wave, row) in surface.profile.iter_mut().zip(group) {
+            for (wave, row) in surface.profile.iter_mut().zip(half) {
                 wave.amplitude = row.amplitude_mm.mm_to_m();
             }
             surface
         };
-        Replicate { surfaces: own.iter().take(REALISATIONS).map(surface).collect() }
+        Replicate {
+            groups: half[0].groups as usize,
+            surfaces: own.iter().take(REALISATIONS).map(surface).collect(),
+        }
     };
     let of_kind = |own: &[Surface]| -> Vec<Replicate> {
-        let kind = own[0].kind;
-        let groups = rows.chunk_by(|a, b| (a.waves, a.group) == (b.waves, b.group));
-        groups
-            .filter(|group| group[0].waves == kind.waves)
-            .map(|group| replicate(own, group))
-            .filter(|replicate| {
-                replicate.surfaces[0].profile.iter().any(|wave| wave.amplitude != 0.0)
-            })
+        let halves = rows.chunk_by(|a, b| (a.waves, a.replicate) == (b.waves, b.replicate));
+        halves
+            .filter(|half| half[0].waves == own[0].kind.waves)
+            .map(|half| replicate(own, half))
             .collect()
     };
-    Ok(of_sines.flat_map(of_kind).collect())
+    of_sines.flat_map(of_kind).collect()
 }
 
 /// The curves of all replicates.
-pub(super) fn tasks(parameters: &Bem, replicates: &[Replicate]) -> Vec<Task> {
-    let surfaces = replicates.iter().flat_map(|replicate| &replicate.surfaces);
+fn tasks(parameters: &Bem, scans: &Scans) -> Vec<Task> {
+    let surfaces = scans.replicates.iter().flat_map(|replicate| &replicate.surfaces);
     surfaces
         .flat_map(|surface| {
             let task = move |speed: &f64| Task { surface: surface.clone(), speed_mm_s: *speed };
@@ -117,11 +156,11 @@ pub(super) fn tasks(parameters: &Bem, replicates: &[Replicate]) -> Vec<Task> {
 /// Solves the replicates that are not in the store.
 pub(super) fn errors(
     parameters: &Bem,
-    replicates: &[Replicate],
+    scans: &Scans,
     work: &Work,
 ) -> Result<Vec<ScanErrorRow>, StageError> {
     let mut rows = Vec::new();
-    for of_kind in replicates.chunk_by(|a, b| a.surfaces[0].kind == b.surfaces[0].kind) {
+    for of_kind in scans.replicates.chunk_by(|a, b| a.surfaces[0].kind == b.surfaces[0].kind) {
         for &speed_mm_s in &parameters.speeds_mm_s {
             let tasks: Vec<&Surface> =
                 of_kind.iter().flat_map(|replicate| &replicate.surfaces).collect();
@@ -137,16 +176,13 @@ pub(super) fn errors(
 
 /// The rows of one kind at one speed, from the curves of its replicates one after the other.
 fn of_one_speed(replicates: &[Replicate], curves: &[Vec<CurveRow>]) -> Vec<ScanErrorRow> {
-    let (groups, each) = (replicates.len(), replicates[0].surfaces.len());
-    if groups < 2 {
-        return Vec::new();
-    }
+    let (groups, each) = (replicates[0].groups, replicates[0].surfaces.len());
     let row = |(k, first): (usize, &CurveRow)| {
         let friction = |group: &[Vec<CurveRow>]| {
             group.iter().map(|curve| curve[k].friction_coefficient).sum::<f64>() / each as f64
         };
         let estimates: Vec<f64> = curves.chunks(each).map(friction).collect();
-        let mean = estimates.iter().sum::<f64>() / groups as f64;
+        let mean = estimates.iter().sum::<f64>() / estimates.len() as f64;
         ScanErrorRow {
             kind: first.kind,
             speed_mm_s: first.speed_mm_s,
@@ -155,7 +191,8 @@ fn of_one_speed(replicates: &[Replicate], curves: &[Vec<CurveRow>]) -> Vec<ScanE
             pressure_mpa: first.pressure_mpa,
             groups: groups as u32,
             realisations: each as u32,
-            relative_confidence_95: jackknife_95(&estimates) / mean.abs(),
+            relative_confidence_95: delete_d_jackknife_95(&estimates, groups, groups / 2)
+                / mean.abs(),
         }
     };
     curves[0].iter().enumerate().map(row).collect()
@@ -165,11 +202,11 @@ fn of_one_speed(replicates: &[Replicate], curves: &[Vec<CurveRow>]) -> Vec<ScanE
 pub(super) fn missing(
     parameters: &Bem,
     rubber: &Rubber,
-    replicates: &[Replicate],
+    scans: &Scans,
     store: &SolveStore,
 ) -> Result<Vec<Task>, StageError> {
     let mut missing = Vec::new();
-    for task in tasks(parameters, replicates) {
+    for task in tasks(parameters, scans) {
         if !task.is_finished(parameters, rubber, store)? {
             missing.push(task);
         }
@@ -185,7 +222,7 @@ mod tests {
     fn the_error_is_the_jackknife_of_the_groups() {
         let surface =
             |realisation| Surface { kind: SurfaceKind::sines(8), realisation, profile: Vec::new() };
-        let replicate = Replicate { surfaces: vec![surface(1), surface(2)] };
+        let replicate = Replicate { groups: 3, surfaces: vec![surface(1), surface(2)] };
         let curve = |friction_coefficient| {
             vec![CurveRow {
                 kind: SurfaceKind::sines(8),

@@ -42,18 +42,7 @@ impl<'a> Work<'a> {
     /// realisations an accuracy needs follows from those it has.
     pub fn missing(&self, ensembles: &mut [Ensemble]) -> Result<Vec<Task>, StageError> {
         while ensembles.iter().any(|ensemble| !ensemble.open().is_empty()) {
-            let mut missing = Vec::new();
-            for ensemble in &*ensembles {
-                for surface in ensemble.open() {
-                    let task = Task {
-                        surface: ensemble.to_solve(surface),
-                        speed_mm_s: ensemble.speed_mm_s,
-                    };
-                    if !task.is_finished(self.parameters, self.rubber, self.store)? {
-                        missing.push(task);
-                    }
-                }
-            }
+            let missing = self.missing_of_open(ensembles)?;
             if !missing.is_empty() {
                 return Ok(missing);
             }
@@ -64,6 +53,21 @@ impl<'a> Work<'a> {
             self.extend_all(ensembles)?;
         }
         Ok(Vec::new())
+    }
+
+    /// The curves that are open now and that the store does not have.
+    pub fn missing_of_open(&self, ensembles: &[Ensemble]) -> Result<Vec<Task>, StageError> {
+        let mut missing = Vec::new();
+        for ensemble in ensembles {
+            for surface in ensemble.open() {
+                let task =
+                    Task { surface: ensemble.to_solve(surface), speed_mm_s: ensemble.speed_mm_s };
+                if !task.is_finished(self.parameters, self.rubber, self.store)? {
+                    missing.push(task);
+                }
+            }
+        }
+        Ok(missing)
     }
 
     fn extend_all(&self, ensembles: &mut [Ensemble]) -> Result<(), StageError> {

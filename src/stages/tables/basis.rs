@@ -2,8 +2,9 @@
 
 use super::{FrictionRow, Model};
 use crate::artifact::RunView;
-use crate::numerics::statistics::MeanEstimate;
+use crate::numerics::statistics::{MeanEstimate, combined_95};
 use crate::stages::StageError;
+use crate::stages::approximate::GROUPS;
 use crate::stages::bem::{SCAN_ERRORS, ScanErrorRow};
 use crate::stages::friction::Condition;
 use crate::stages::ingest::WINDOWS;
@@ -102,14 +103,23 @@ impl Basis {
     }
 }
 
-/// The statistical errors, which are independent of each other, in the root of the sum of their squares, and the others as
-/// they are.
+/// The statistical errors, which are independent of each other, as one interval, and the others as they are.
 pub(super) fn sum_of_errors(row: &FrictionRow) -> Option<f64> {
     let microscale = match row.model {
         Model::Hybrid => row.microscale_error?,
         _ => 0.0,
     };
-    let statistical = row.confidence_95?.hypot(row.scan_error?).hypot(microscale);
+    let freedom = |values: u32| f64::from(values.max(2) - 1);
+    let scatter = match row.model {
+        // The average of two sorts of realisations states no degrees of freedom: many make the standard error the largest.
+        Model::Multilevel => f64::from(u32::MAX),
+        _ if row.kind.method == Method::Sines => freedom(row.realisations.len() as u32),
+        _ => freedom(row.windows),
+    };
+    let groups = row.windows.min(GROUPS as u32);
+    let statistical =
+        combined_95(&[(row.confidence_95?, scatter), (row.scan_error?, freedom(groups))])
+            .hypot(microscale);
     let discretisation = row.discretisation_error?;
     let model = row.model_error.unwrap_or(0.0);
     Some(statistical + row.interpolation_error + discretisation + row.left_out_error + model)
@@ -144,7 +154,7 @@ mod tests {
         assert_eq!((rows[0].windows, rows[0].shortest_wavelength_mm), (27, 0.06));
         approx::assert_relative_eq!(rows[0].scan_error.unwrap(), 0.3, max_relative = 1e-12);
         // 12.706 x 0.1 of the phases; a thousandth and a two thousandth of interpolation and grid.
-        let expected = 1.270_62_f64.hypot(0.3) + 1.5e-3;
+        let expected = combined_95(&[(1.270_62, 1.0), (0.3, 5.0)]) + 1.5e-3;
         approx::assert_relative_eq!(rows[0].error_estimate.unwrap(), expected, max_relative = 1e-5);
         // Waves that the recipe states are of no scans; a single window tells nothing.
         let mut given = average(Model::Bem, values());

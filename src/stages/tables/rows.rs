@@ -115,9 +115,9 @@ pub struct FrictionRow {
     /// it has none the share of friction that was measured on other surfaces. Absent for other models.
     #[schemars(extend("unit" = "1"))]
     pub model_error: Option<f64>,
-    /// Error of the mean, all parts: the root of the sum of squares of `confidence_95`, `scan_error` and
-    /// `microscale_error`, which are independent, plus the errors by interpolation, by discretisation, by waves left out and
-    /// of the model; absent where one of them is not known.
+    /// Error of the mean, all parts: the half width of the 95 % interval by realisations and scans together, whose variances
+    /// add (`combined_95`), `microscale_error` added to it in squares, plus the errors by interpolation, by discretisation, by
+    /// waves left out and of the model; absent where one of them is not known.
     #[schemars(extend("unit" = "1"))]
     pub error_estimate: Option<f64>,
     /// Mean pressure, averaged over the realisations where the area is given.

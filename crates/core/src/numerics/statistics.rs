@@ -101,6 +101,27 @@ pub fn student_t_975(degrees_of_freedom: f64) -> f64 {
         .inverse_cdf(0.975)
 }
 
+/// Half width of the 95 % interval of a sum of independent parts, from the half width and the degrees of freedom of the
+/// interval of each: the standard errors add in squares, and Student's t has the degrees of freedom
+/// `(sum s²)² / sum (s⁴/n)` (Satterthwaite 1946, doi:10.2307/3002019). Intervals that add in squares instead are too wide,
+/// because all parts are not off at once by what their few values leave open. Never below the widest of the parts.
+pub fn combined_95(parts: &[(f64, f64)]) -> f64 {
+    let variances = || {
+        let standard_error = |&(half_width, freedom): &(f64, f64)| {
+            if half_width == 0.0 { 0.0 } else { half_width / student_t_975(freedom) }
+        };
+        parts.iter().map(move |part| (standard_error(part).powi(2), part.1))
+    };
+    let sum: f64 = variances().map(|(variance, _)| variance).sum();
+    if sum == 0.0 {
+        return 0.0;
+    }
+    let present = variances().filter(|(variance, _)| *variance != 0.0);
+    let freedom = sum.powi(2) / present.map(|(variance, n)| variance.powi(2) / n).sum::<f64>();
+    let widest = parts.iter().map(|part| part.0).fold(0.0, f64::max);
+    (student_t_975(freedom) * sum.sqrt()).max(widest)
+}
+
 /// Half width of the two-sided 95 % jackknife interval from the n estimates that leave out one
 /// member of the sample each: `t sqrt((n - 1)/n sum of (estimate - mean)^2)`, Student's t with n - 1
 /// degrees of freedom.
@@ -108,10 +129,52 @@ pub fn student_t_975(degrees_of_freedom: f64) -> f64 {
 /// # Panics
 /// For fewer than two estimates.
 pub fn jackknife_95(estimates: &[f64]) -> f64 {
+    delete_d_jackknife_95(estimates, estimates.len(), 1)
+}
+
+/// Half width of the two-sided 95 % interval from estimates that leave out `left_out` of `members` each:
+/// `t sqrt((members - left_out)/left_out mean of (estimate - mean)^2)`, Student's t with `members - 1` degrees of freedom.
+///
+/// For an estimate that is linear in the members it is that of the jackknife, if all pairs of members are left out
+/// together equally often. For one that is not smooth, such as an amplitude that vanishes, the jackknife of single members
+/// fails, because they change less than the error is; halves change as much as the error
+/// (Shao & Wu 1989, doi:10.1214/aos/1176347263).
+///
+/// # Panics
+/// For fewer than two members.
+pub fn delete_d_jackknife_95(estimates: &[f64], members: usize, left_out: usize) -> f64 {
     let n = estimates.len() as f64;
     let mean = estimates.iter().sum::<f64>() / n;
     let squares: f64 = estimates.iter().map(|estimate| (estimate - mean).powi(2)).sum();
-    student_t_975(n - 1.0) * ((n - 1.0) / n * squares).sqrt()
+    let (all, out) = (members as f64, left_out as f64);
+    student_t_975(all - 1.0) * ((all - out) / out * squares / n).sqrt()
+}
+
+/// Halves of up to six members, of which each is left out in turn: every member equally often, every pair of them equally
+/// often. Of an odd number the smaller half. All halves of five and fewer, ten of the twenty of six (a balanced block design).
+///
+/// # Panics
+/// For fewer than two members or more than six.
+pub fn balanced_halves(members: usize) -> Vec<Vec<usize>> {
+    assert!((2..=6).contains(&members), "{members} members");
+    if members == 6 {
+        const BLOCKS: [[usize; 3]; 10] = [
+            [0, 1, 2],
+            [0, 1, 3],
+            [0, 2, 4],
+            [0, 3, 5],
+            [0, 4, 5],
+            [1, 2, 5],
+            [1, 3, 4],
+            [1, 4, 5],
+            [2, 3, 4],
+            [2, 3, 5],
+        ];
+        return BLOCKS.map(Vec::from).to_vec();
+    }
+    let of_a_half = |set: &usize| set.count_ones() as usize == members / 2;
+    let members_of = |set: usize| (0..members).filter(|k| set >> k & 1 == 1).collect();
+    (0..1 << members).filter(of_a_half).map(members_of).collect()
 }
 
 #[cfg(test)]
@@ -189,5 +252,51 @@ mod tests {
         let estimate = MeanEstimate::of(&[2.0]);
         assert_eq!(estimate.mean, 2.0);
         assert!(estimate.confidence_95.is_nan());
+    }
+
+    #[test]
+    fn parts_add_with_the_degrees_of_freedom_of_both() {
+        assert_eq!(combined_95(&[(0.0, 5.0), (0.0, 3.0)]), 0.0);
+        approx::assert_relative_eq!(
+            combined_95(&[(0.3, 5.0), (0.0, 0.0)]),
+            0.3,
+            max_relative = 1e-12
+        );
+        // Two equal parts of five degrees have ten: 2.228 139 in every table.
+        let one = student_t_975(5.0);
+        let both = combined_95(&[(one, 5.0), (one, 5.0)]);
+        approx::assert_relative_eq!(both, 2.228_139 * 2.0_f64.sqrt(), max_relative = 1e-6);
+        // 1 and 2 with 4 and 9 degrees: 25 / (1/4 + 16/9) = 12.329 degrees.
+        let parts = [(student_t_975(4.0), 4.0), (2.0 * student_t_975(9.0), 9.0)];
+        let expected = student_t_975(25.0 / (0.25 + 16.0 / 9.0)) * 5.0_f64.sqrt();
+        approx::assert_relative_eq!(combined_95(&parts), expected, max_relative = 1e-12);
+        // Of two values and of many: 12.7 and 2, whose errors together have 1.2 degrees.
+        assert_eq!(combined_95(&[(12.7, 1.0), (0.9, 1e6)]), 12.7);
+    }
+
+    #[test]
+    fn halves_are_balanced_and_give_the_variance_of_a_mean() {
+        for members in 2..=6 {
+            let halves = balanced_halves(members);
+            assert!(halves.iter().all(|half| half.len() == members / 2));
+            let both = |i: usize, j: usize| {
+                halves.iter().filter(|half| half.contains(&i) && half.contains(&j)).count()
+            };
+            for i in 0..members {
+                assert_eq!(both(i, i), both(0, 0));
+                for j in 0..i {
+                    assert_eq!(both(i, j), both(0, 1), "{members}: {i} {j}");
+                }
+            }
+            let values = &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0][..members];
+            let without = |half: &Vec<usize>| {
+                let rest = (0..members).filter(|k| !half.contains(k));
+                rest.map(|k| values[k]).sum::<f64>() / (members - half.len()) as f64
+            };
+            let estimates: Vec<f64> = halves.iter().map(without).collect();
+            let found = delete_d_jackknife_95(&estimates, members, members / 2);
+            let expected = MeanEstimate::of(values).confidence_95;
+            approx::assert_relative_eq!(found, expected, max_relative = 1e-12);
+        }
     }
 }
