@@ -11,6 +11,7 @@
 //! |---|---|
 //! | [`half_space`] | the operator from pressure to displacement, by FFT |
 //! | `patches`, `preconditioner` | runs of contact points; the operator's approximate inverse on them |
+//! | `hierarchical`, `influence` | compressed matrices and their factors; the entries of these matrices |
 //! | `active_set` | the contact set and the pressures on one grid |
 //! | `direct` | small contacts by dense factors |
 //! | [`sliding`] | nested grids from coarse to fine: the solver that users call |
@@ -30,6 +31,8 @@ mod active_set;
 mod direct;
 mod edges;
 mod error;
+mod hierarchical;
+mod influence;
 mod patches;
 pub(crate) mod preconditioner;
 

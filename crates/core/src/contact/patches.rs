@@ -1,7 +1,6 @@
 //! Contact patches: runs of neighbouring contact points.
 
-/// Runs of neighbouring contact points on a periodic grid, merged with their neighbours where
-/// there are more than a given number of them.
+/// Runs of neighbouring contact points on a periodic grid.
 pub(super) struct Patches {
     /// Patch of each contact point, in the order of the contact set.
     pub of_point: Vec<u32>,
@@ -13,7 +12,7 @@ pub(super) struct Patches {
 
 impl Patches {
     /// Patches of an ascending list of grid points out of `points`.
-    pub fn new(set: &[u32], points: usize, most: usize) -> Self {
+    pub fn new(set: &[u32], points: usize) -> Self {
         let mut of_point = Vec::with_capacity(set.len());
         let mut patch = 0;
         for (j, i) in set.iter().enumerate() {
@@ -31,11 +30,6 @@ impl Patches {
                 *id = 0;
             }
             count -= 1;
-        }
-        let per_group = count.div_ceil(most).max(1) as u32;
-        if per_group > 1 {
-            of_point.iter_mut().for_each(|id| *id /= per_group);
-            count = count.div_ceil(per_group as usize);
         }
         Self { of_point, count, wraps }
     }
@@ -66,7 +60,7 @@ mod tests {
     #[test]
     fn runs_are_found_across_the_end_of_the_grid() {
         let set = [0, 1, 4, 5, 6, 9];
-        let patches = Patches::new(&set, 10, 100);
+        let patches = Patches::new(&set, 10);
         assert_eq!(patches.of_point, [0, 0, 1, 1, 1, 0]);
         assert_eq!(patches.count, 2);
         let third = 1.0 / 3.0;
@@ -76,16 +70,8 @@ mod tests {
     }
 
     #[test]
-    fn many_patches_are_merged_to_the_limit() {
-        let set: Vec<u32> = (0..100).map(|i| 3 * i).collect();
-        let patches = Patches::new(&set, 300, 8);
-        assert!(patches.count <= 8, "{}", patches.count);
-        assert_eq!(*patches.of_point.last().unwrap() as usize, patches.count - 1);
-    }
-
-    #[test]
     fn all_points_or_none_are_one_patch_or_none() {
-        assert_eq!(Patches::new(&[0, 1, 2], 3, 8).count, 1);
-        assert_eq!(Patches::new(&[], 3, 8).count, 0);
+        assert_eq!(Patches::new(&[0, 1, 2], 3).count, 1);
+        assert_eq!(Patches::new(&[], 3).count, 0);
     }
 }

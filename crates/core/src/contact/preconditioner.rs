@@ -1,13 +1,12 @@
 //! Approximate inverse of the half-space operator on a contact set.
 
 use super::half_space::HalfSpace;
+use super::hierarchical::{Compressed, Factors};
+use super::influence::Influence;
 use super::patches::Patches;
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use faer::{Mat, MatMut};
 
-/// More patches than this are merged for the coarse part: its dense factors then cost less than
-/// one transform of the grids on which so many patches occur.
-const MOST_PATCHES: usize = 256;
+/// What compression may leave out of the forces between patches, relative: much less than what point forces do.
+const TOLERANCE: f64 = 1e-4;
 
 /// What the preconditioner needs of an operator from pressures to displacements on a set.
 pub(crate) trait SetOperator {
@@ -50,8 +49,9 @@ impl SetOperator for HalfSpace {
 ///
 /// Two parts. Within a patch the restriction of the inverse operator (a filter by `|q| E_r / 2`) is close to the
 /// inverse of the restriction. Between patches it is not, since it keeps the free surface between them at rest: there
-/// the displacement of each patch is reduced to one number, and the forces between patches come from a small dense
-/// system in which patches act on each other as point forces.
+/// the displacement of each patch is reduced to one number, and the forces between patches come from a
+/// system of the size of their number in which patches act on each other as point forces; compressed, it is factorised
+/// for thousands of them in less time than a transform of the grids on which so many occur.
 pub(crate) struct Preconditioner {
     patches: Patches,
     /// Pressure under a flat punch on each patch, with unit sum.
@@ -60,8 +60,10 @@ pub(crate) struct Preconditioner {
 }
 
 struct Coarse {
-    factors: PartialPivLu<f64>,
+    factors: Factors,
     scale: f64,
+    /// Forces with unit sum that displace all patches alike.
+    uniform: Vec<f64>,
 }
 
 impl Preconditioner {
@@ -69,11 +71,11 @@ impl Preconditioner {
     /// at point 0.
     pub fn new(space: &mut impl SetOperator, kernel: &[f64], set: &[u32]) -> Self {
         let points = space.points();
-        let patches = Patches::new(set, points, MOST_PATCHES);
+        let patches = Patches::new(set, points);
         let mut shape = vec![0.0; set.len()];
         space.punch_on(set, &mut shape);
-        // The gaps make the edges of a patch stiff, so the sum is positive. After merging it may not be: then the
-        // pressure is uniform.
+        // The gaps make the edges of a patch stiff, so the sum is positive. Where loss makes one edge weak it may not be:
+        // then the pressure is uniform.
         let sums = patches.sums(shape.iter().copied());
         let counts = patches.sums(std::iter::repeat_n(1.0, set.len()));
         for (s, id) in shape.iter_mut().zip(&patches.of_point) {
@@ -142,32 +144,32 @@ impl Coarse {
         let mut displaced = vec![0.0; set.len()];
         space.displacement_on(set, shape, &mut displaced);
         let row_sums = patches.sums(displaced.iter().zip(shape).map(|(w, s)| w * s));
-        let scale = kernel[0].abs();
-        let mut matrix = Mat::<f64>::zeros(count + 1, count + 1);
-        for j in 0..count {
-            let mut others = 0.0;
-            for k in (0..count).filter(|k| *k != j) {
-                let steps = (centres[j] - centres[k]).round() as i64;
-                let influence = kernel[steps.rem_euclid(points as i64) as usize];
-                matrix[(j, k)] = influence / scale;
-                others += influence;
-            }
-            // One application to all shapes at once gives the row sums; what the other patches
-            // do not explain is the patch's own compliance.
-            matrix[(j, j)] = (row_sums[j] - others) / scale;
-            matrix[(j, count)] = 1.0;
-            matrix[(count, j)] = 1.0;
-        }
-        Self { factors: matrix.partial_piv_lu(), scale }
+        let influence = Influence::new(kernel);
+        let place = |x: &f64| (x.round() as i64).rem_euclid(points as i64) as u32;
+        let places: Vec<u32> = centres.iter().map(place).collect();
+        let entry = |j: usize, k: usize| influence.at(places[j], places[k]);
+        let between = Compressed::new(0..count, TOLERANCE, &entry);
+        // One application to all shapes at once gives the row sums; what the other patches
+        // do not explain is the patch's own compliance.
+        let scale = influence.softness;
+        let all = row_sums.iter().map(|sum| sum / scale + influence.mean * count as f64);
+        let own: Vec<f64> = all.zip(between.row_sums()).map(|(all, others)| all - others).collect();
+        let factors = between.factorise(&own);
+        let mut uniform = vec![1.0; count];
+        factors.solve_one_in_place(&mut uniform);
+        let total: f64 = uniform.iter().sum();
+        uniform.iter_mut().for_each(|f| *f /= total);
+        Self { factors, scale, uniform }
     }
 
     /// Forces on the patches (sum zero) for their mean displacements.
     fn solve(&self, means: &[f64]) -> Vec<f64> {
-        let mut rhs: Vec<f64> = means.iter().map(|m| m / self.scale).collect();
-        rhs.push(0.0);
-        let n = rhs.len();
-        self.factors.solve_in_place(MatMut::from_column_major_slice_mut(&mut rhs, n, 1));
-        rhs.pop();
-        rhs
+        // What displaces all patches alike needs no forces of sum zero; left in, it would only cost digits.
+        let common = means.iter().sum::<f64>() / means.len() as f64;
+        let mut forces: Vec<f64> = means.iter().map(|m| (m - common) / self.scale).collect();
+        self.factors.solve_one_in_place(&mut forces);
+        let total: f64 = forces.iter().sum();
+        forces.iter_mut().zip(&self.uniform).for_each(|(f, u)| *f -= total * u);
+        forces
     }
 }
