@@ -114,6 +114,12 @@ impl EdgeReader {
         self.overhang(|j| pressure[(last + n - j) % n], &self.towards_falling)
     }
 
+    /// Distance in grid steps from the contact point `pressure(0)` out to its edge, for the pressures from there into the
+    /// contact, which lies on the side of growing `x` or of falling `x`.
+    pub fn overhang_into(&self, pressure: impl Fn(usize) -> f64, growing: bool) -> f64 {
+        self.overhang(pressure, if growing { &self.towards_growing } else { &self.towards_falling })
+    }
+
     /// Overhang for the pressures from the edge on. Of a small patch no more than half of the
     /// points are read, since beyond its middle they belong to the other edge.
     fn overhang(&self, pressure: impl Fn(usize) -> f64, filter: &[f64; MOST_PRESSURES]) -> f64 {
@@ -128,7 +134,7 @@ impl EdgeReader {
 
     /// Width in grid steps of a patch of one point: that of two points of which one just
     /// touches, reduced like the contact of a parabola by the root of the indentation.
-    fn width_of_single_point(&self, i: usize, displacement: &[f64], separation: &[f64]) -> f64 {
+    pub fn width_of_single_point(&self, i: usize, displacement: &[f64], separation: &[f64]) -> f64 {
         let n = displacement.len();
         let width = |neighbour: usize, filter: &[f64; MOST_PRESSURES]| {
             let fall = displacement[i] - displacement[neighbour];

@@ -26,6 +26,29 @@ pub enum ContactError {
         /// Its value.
         value: f64,
     },
+    /// A height of an areal surface that is not a number.
+    #[error(
+        "the height in column {column} of row {row} of the surface is {value} (both count from zero): fill or cut missing \
+         points first"
+    )]
+    BadHeightOfSurface {
+        /// Zero-based index along `x`.
+        column: usize,
+        /// Zero-based index along `y`.
+        row: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// An areal contact would need more memory than the caller allows.
+    #[error(
+        "the contact needs about {needed} bytes of memory, the limit is {limit}: use fewer grid points or a higher limit"
+    )]
+    TooMuchMemory {
+        /// Estimated most memory in bytes.
+        needed: u64,
+        /// The limit in bytes.
+        limit: u64,
+    },
     /// The iteration ended before the residual was small enough.
     #[error(
         "the contact did not converge: p = {pressure:e} Pa, v = {speed:e} m/s, {points} points: \
@@ -69,7 +92,11 @@ pub enum ContactError {
 impl HasKind for ContactError {
     fn kind(&self) -> ErrorKind {
         match self {
-            Self::Rubber(_) | Self::OutOfRange { .. } | Self::BadHeight { .. } => ErrorKind::Input,
+            Self::Rubber(_)
+            | Self::OutOfRange { .. }
+            | Self::BadHeight { .. }
+            | Self::BadHeightOfSurface { .. }
+            | Self::TooMuchMemory { .. } => ErrorKind::Input,
             Self::NotConverged { .. } | Self::AreaNotReached { .. } => ErrorKind::Failure,
             Self::Interrupted => ErrorKind::Interrupted,
         }

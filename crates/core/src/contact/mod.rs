@@ -20,9 +20,11 @@
 //! | [`solution`] | friction, area, separation, dissipation and residual of a solved contact |
 //! | [`area`] | the pressure that gives a contact area |
 //! | [`curve`] | friction over contact area, from few solves |
+//! | [`areal`] | the same for surfaces that are rough in both directions |
 //! | [`refine`] | grids fine enough for a given accuracy of friction |
 
 pub mod area;
+pub mod areal;
 pub mod curve;
 pub mod half_space;
 pub mod refine;

@@ -1,0 +1,251 @@
+//! The operator of the areal half-space, or layer, in Fourier space.
+
+use super::super::half_space::compliance;
+use super::layer;
+use super::transform::Transform;
+use crate::rubber::Viscoelastic;
+use rayon::prelude::*;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Sliding in the plane of the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sliding {
+    /// Speed of the rubber in m/s; zero for an elastic contact with the relaxed modulus.
+    pub speed: f64,
+    /// Angle of the velocity from `x` towards `y` in rad.
+    pub angle: f64,
+}
+
+impl Sliding {
+    /// Velocity along `x` and `y` in m/s. It is exactly along the grid where the angle is a multiple of a right one.
+    pub(super) fn velocity(self) -> [f64; 2] {
+        self.direction().map(|component| component * self.speed)
+    }
+
+    /// Unit vector of the velocity.
+    pub(super) fn direction(self) -> [f64; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        // A quarter turn in double precision leaves 6e-17, which is not meant.
+        let clean = |x: f64| if x.abs() < 1e-15 { 0.0 } else { x };
+        [clean(cosine), clean(sine)]
+    }
+}
+
+/// Body and motion that make an operator on grids of one period.
+#[derive(Clone, Copy)]
+pub(super) struct Body<'a> {
+    pub rubber: &'a dyn Viscoelastic,
+    pub sliding: Sliding,
+    pub periods: [f64; 2],
+    pub thickness: Option<f64>,
+}
+
+impl Body<'_> {
+    /// Complex compliance in m/Pa of the wave `k` of a grid, not that of the mean.
+    ///
+    /// As on the line the phase is tapered towards the highest waves of the grid, here along both directions, since those
+    /// have no direction of motion; they have the mean modulus of both.
+    fn compliance(&self, k: [i64; 2], points: [usize; 2]) -> Complex64 {
+        let relative = [0, 1].map(|a| 2.0 * k[a].unsigned_abs() as f64 / points[a] as f64);
+        let [qx, qy] = [0, 1].map(|a| TAU * k[a] as f64 / self.periods[a]);
+        let wavenumber = qx.hypot(qy);
+        let [vx, vy] = self.sliding.velocity();
+        let body = self.thickness.map_or(1.0, |h| {
+            layer::relative_compliance(wavenumber * h, self.rubber.poisson_ratio())
+        });
+        let of_frequency = |frequency: f64| {
+            // The line's function for a wave that excites this frequency.
+            compliance(self.rubber, frequency / wavenumber, wavenumber, 0.0)
+        };
+        if relative.contains(&1.0) {
+            let both =
+                of_frequency(qx * vx + qy * vy).norm() + of_frequency(qx * vx - qy * vy).norm();
+            return Complex64::new(0.5 * body * both, 0.0);
+        }
+        let (modulus, phase) = of_frequency(qx * vx + qy * vy).to_polar();
+        let taper = |r: f64| (FRAC_PI_2 * r.powi(2)).cos().powi(2);
+        Complex64::from_polar(body * modulus, phase * taper(relative[0]) * taper(relative[1]))
+    }
+
+    /// Mean compression per mean pressure, in m/Pa; zero for a half-space, whose is not defined.
+    pub fn mean_compliance(&self) -> f64 {
+        let (nu, modulus) = (self.rubber.poisson_ratio(), self.rubber.reduced_modulus(0.0).re);
+        self.thickness.map_or(0.0, |h| layer::mean_compliance(h, nu, modulus))
+    }
+}
+
+/// Surface displacement under a pressure that is steady in the frame of the surface:
+/// `w_hat(q) = 2 F(|q| h) / (|q| E_r(q · v)) t_hat(q)` for `q != 0`, `w_hat(0) = 0`.
+pub(super) struct ArealHalfSpace {
+    points: [usize; 2],
+    periods: [f64; 2],
+    direction: [f64; 2],
+    /// Compliances in m/Pa, ordered like the spectrum.
+    symbol: Vec<Complex64>,
+    /// Stiffness in Pa/m that stands for that of the mean where a set of points is filtered.
+    mean_stiffness: f64,
+    transform: Transform,
+}
+
+/// Direction of an application of the operator.
+#[derive(Clone, Copy)]
+enum Direction {
+    PressureToDisplacement,
+    DisplacementToPressure,
+}
+
+impl ArealHalfSpace {
+    pub fn new(body: Body, points: [usize; 2]) -> Self {
+        let transform = Transform::new(points);
+        let ny = points[1];
+        let mut symbol = vec![Complex64::ZERO; transform.bins() * ny];
+        // The trait promises no thread safety; a set-up costs as much as a few transforms.
+        for (bin, column) in symbol.chunks_exact_mut(ny).enumerate() {
+            for (row, c) in column.iter_mut().enumerate() {
+                if bin + row > 0 {
+                    *c = body.compliance([bin as i64, signed(row, ny)], points);
+                }
+            }
+        }
+        let longest = [symbol[1 % symbol.len()], symbol[ny % symbol.len()]];
+        let softest = longest.iter().map(|c| c.norm()).fold(0.0, f64::max);
+        let (periods, direction) = (body.periods, body.sliding.direction());
+        Self { points, periods, direction, symbol, mean_stiffness: softest.recip(), transform }
+    }
+
+    pub fn points(&self) -> [usize; 2] {
+        self.points
+    }
+
+    /// Displacement in m (mean zero) under a pressure in Pa.
+    pub fn displacement(&mut self, pressure: &[f64], displacement: &mut [f64]) {
+        self.transform.real.copy_from_slice(pressure);
+        self.apply(Direction::PressureToDisplacement);
+        displacement.copy_from_slice(&self.transform.real);
+    }
+
+    /// Pressure in Pa (mean zero) that makes a displacement in m.
+    pub fn pressure(&mut self, displacement: &[f64]) -> Vec<f64> {
+        self.transform.real.copy_from_slice(displacement);
+        self.apply(Direction::DisplacementToPressure);
+        let mean = mean(&self.transform.real);
+        self.transform.real.iter().map(|t| t - mean).collect()
+    }
+
+    /// [`Self::displacement`] from and to a set of points only.
+    pub fn displacement_on(&mut self, set: &[u32], pressure: &[f64], out: &mut [f64]) {
+        self.restricted(set, pressure, out, Direction::PressureToDisplacement);
+    }
+
+    /// Approximate inverse of [`Self::displacement_on`]: the inverse filter, restricted.
+    pub fn pressure_on(&mut self, set: &[u32], displacement: &[f64], out: &mut [f64]) {
+        self.restricted(set, displacement, out, Direction::DisplacementToPressure);
+    }
+
+    /// Slope of a field along the sliding direction, or across it (to its left), by trigonometric interpolation.
+    pub fn slope(&mut self, field: &[f64], across: bool) -> Vec<f64> {
+        let [ex, ey] = self.direction;
+        let [ex, ey] = if across { [-ey, ex] } else { [ex, ey] };
+        self.transform.real.copy_from_slice(field);
+        let waves = Waves { points: self.points, periods: self.periods };
+        let norm = 1.0 / field.len() as f64;
+        self.transform.filter(|bin, column| {
+            for (row, c) in column.iter_mut().enumerate() {
+                let [qx, qy] = waves.with_direction(bin, row);
+                *c *= Complex64::new(0.0, (ex * qx + ey * qy) * norm);
+            }
+        });
+        self.transform.real.clone()
+    }
+
+    /// Mean hysteretic power per area and speed `Σ_q q_s Im(-C(q)) |t_hat|²` in Pa, from the pressure spectrum alone.
+    pub fn hysteretic_traction(&mut self, pressure: &[f64]) -> f64 {
+        self.transform.real.copy_from_slice(pressure);
+        self.transform.forward();
+        let waves = Waves { points: self.points, periods: self.periods };
+        let ([ex, ey], ny) = (self.direction, self.points[1]);
+        let norm = (pressure.len() as f64).powi(-2);
+        let spectrum = self.transform.spectrum.par_chunks(ny);
+        let columns: Vec<f64> = spectrum
+            .zip(self.symbol.par_chunks(ny))
+            .enumerate()
+            .map(|(bin, (spectrum, symbol))| {
+                // Waves and their conjugates; those with k_x = 0 are all there.
+                let both = if bin == 0 { 1.0 } else { 2.0 };
+                let wave = |(row, (t, c)): (usize, (&Complex64, &Complex64))| {
+                    let [qx, qy] = waves.with_direction(bin, row);
+                    -both * (ex * qx + ey * qy) * c.im * t.norm_sqr()
+                };
+                spectrum.iter().zip(symbol).enumerate().map(wave).sum::<f64>() * norm
+            })
+            .collect();
+        columns.iter().sum()
+    }
+
+    fn restricted(&mut self, set: &[u32], input: &[f64], out: &mut [f64], direction: Direction) {
+        let real = &mut self.transform.real;
+        real.fill(0.0);
+        for (i, x) in set.iter().zip(input) {
+            real[*i as usize] = *x;
+        }
+        self.apply(direction);
+        for (i, y) in set.iter().zip(out) {
+            *y = self.transform.real[*i as usize];
+        }
+    }
+
+    fn apply(&mut self, direction: Direction) {
+        let (symbol, ny) = (&self.symbol, self.points[1]);
+        let norm = 1.0 / (self.points[0] * ny) as f64;
+        let mean_stiffness = self.mean_stiffness;
+        self.transform.filter(|bin, column| {
+            let symbol = &symbol[bin * ny..][..ny];
+            match direction {
+                Direction::PressureToDisplacement => {
+                    column.iter_mut().zip(symbol).for_each(|(x, c)| *x *= c * norm);
+                }
+                Direction::DisplacementToPressure => {
+                    let mean = column[0] * mean_stiffness * norm;
+                    column
+                        .iter_mut()
+                        .zip(symbol)
+                        .for_each(|(x, c)| *x *= c.conj() * (norm / c.norm_sqr()));
+                    if bin == 0 {
+                        column[0] = mean;
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// Wavenumbers of a grid.
+#[derive(Clone, Copy)]
+struct Waves {
+    points: [usize; 2],
+    periods: [f64; 2],
+}
+
+impl Waves {
+    /// Wavenumbers in rad/m, zero along a direction in which the wave is the highest of an even grid: it has no slope at
+    /// the points.
+    fn with_direction(self, bin: usize, row: usize) -> [f64; 2] {
+        let k = [bin as i64, signed(row, self.points[1])];
+        [0, 1].map(|a| {
+            let highest = 2 * k[a].unsigned_abs() as usize == self.points[a];
+            if highest { 0.0 } else { TAU * k[a] as f64 / self.periods[a] }
+        })
+    }
+}
+
+/// Wave number of an index of a transform of `n` points.
+fn signed(index: usize, n: usize) -> i64 {
+    if 2 * index > n { index as i64 - n as i64 } else { index as i64 }
+}
+
+/// Mean, about the first value, so that a uniform field keeps its digits.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    let first = values[0];
+    first + values.iter().map(|x| x - first).sum::<f64>() / values.len() as f64
+}
