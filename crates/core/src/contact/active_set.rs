@@ -69,7 +69,7 @@ const STALLED_ITERATIONS: usize = 3;
 /// because the coarser grids miss a peak of one point that carries the load.
 const RESTART_ITERATION: usize = 60;
 /// Iterations before a growing number of changes is damped.
-const UNDAMPED_ITERATIONS: usize = 3;
+pub(super) const UNDAMPED_ITERATIONS: usize = 3;
 /// Smallest fraction of a run of wrong points that changes sides.
 const LEAST_DAMPING: f64 = 0.1;
 /// A coarse grid is left once no more than this part of the contact points, or of the points next to them, are wrong:
@@ -84,9 +84,9 @@ const MOST_CORRECTIONS: usize = 5;
 const ROUND_OFF: f64 = 1e-13;
 
 /// Points that are on the wrong side.
-struct Violations {
-    leave: Vec<u32>,
-    enter: Vec<u32>,
+pub(super) struct Violations {
+    pub leave: Vec<u32>,
+    pub enter: Vec<u32>,
 }
 
 /// Detects a residual that no longer falls.
@@ -152,12 +152,7 @@ impl Contact<'_> {
             }
             tight = changes == 0 || iteration > LOOSE_ITERATIONS;
             if iteration > UNDAMPED_ITERATIONS {
-                let grows = changes >= previous;
-                damping = if grows {
-                    (0.5 * damping).max(LEAST_DAMPING)
-                } else {
-                    (1.5 * damping).min(1.0)
-                };
+                damping = damped(damping, changes >= previous);
             }
             previous = changes;
             set = exchange(&set, &wrong, damping, self.heights.len());
@@ -335,12 +330,17 @@ impl Contact<'_> {
     }
 }
 
+/// The next damping, smaller after a number of changes that did not fall.
+pub(super) fn damped(damping: f64, grows: bool) -> f64 {
+    if grows { (0.5 * damping).max(LEAST_DAMPING) } else { (1.5 * damping).min(1.0) }
+}
+
 /// The next contact set: of each run of neighbouring wrong points the share `damping` (at least
 /// one) changes sides, from the contact edge on.
 ///
 /// Where the rubber is lossy the edge condition is so weak on one side of a contact that an edge
 /// one point off makes many points change; exchanging them all at once can then overshoot without end.
-fn exchange(set: &[u32], wrong: &Violations, damping: f64, points: usize) -> Vec<u32> {
+pub(super) fn exchange(set: &[u32], wrong: &Violations, damping: f64, points: usize) -> Vec<u32> {
     let in_contact = |i: usize| set.binary_search(&(i as u32)).is_ok();
     let chosen = |list: &[u32], leaving: bool| -> Vec<u32> {
         let mut chosen = Vec::with_capacity(list.len());

@@ -25,13 +25,25 @@ pub(super) struct Dense {
 }
 
 impl Dense {
-    /// For the `kernel` K in m/Pa, the displacement by a unit pressure at point 0.
+    /// For the `kernel` K in m/Pa, the displacement by a unit pressure at point 0 of a line.
     pub fn new(kernel: &[f64], set: &[u32]) -> Self {
-        let (m, n) = (set.len(), kernel.len());
-        let softness = kernel[0].abs();
+        let n = kernel.len();
+        Self::with_influence(set, kernel[0].abs(), |i, j| {
+            kernel[(set[i] as usize + n - set[j] as usize) % n]
+        })
+    }
+
+    /// For the displacement in m/Pa, `influence(i, j)`, of the point `set[i]` by a unit pressure at `set[j]`, and their
+    /// scale, `softness`.
+    pub fn with_influence(
+        set: &[u32],
+        softness: f64,
+        influence: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let m = set.len();
         let matrix = Mat::from_fn(m + 1, m + 1, |i, j| match (i == m, j == m) {
             (true, true) => 0.0,
-            (false, false) => kernel[(set[i] as usize + n - set[j] as usize) % n] / softness,
+            (false, false) => influence(i, j) / softness,
             _ => 1.0,
         });
         Self { factors: PartialPivLu::new(matrix.as_ref()), softness }

@@ -4,6 +4,8 @@
 //! doi:10.1137/S1052623401383558): solve for the pressures on the present contact set, then drop points under tension and
 //! add points that penetrate. Early systems are solved as accurately as their set deserves.
 
+use super::super::active_set::{UNDAMPED_ITERATIONS, Violations, damped, exchange};
+use super::super::direct::{self, Dense};
 use super::super::solution::displacement_scale;
 use super::half_space::{ArealHalfSpace, mean};
 use super::linear::SetSystem;
@@ -60,15 +62,12 @@ const SMALLEST_GAP: f64 = 1e-2;
 /// points change sides one by one; and the part of points below which changes do not matter there.
 const START_ITERATIONS: usize = 6;
 const START_CHANGES: f64 = 0.02;
-const MOST_ITERATIONS: usize = 200;
+const MOST_ITERATIONS: usize = 100;
+/// Most corrections of a direct solve, and the residual below which none is made.
+const MOST_CORRECTIONS: usize = 5;
+const ROUND_OFF: f64 = 1e-13;
 /// Solves on an unchanged set without a lower residual, after which the rest counts as round-off.
 const STALLED_ITERATIONS: usize = 3;
-
-/// Points that are on the wrong side.
-struct Violations {
-    leave: Vec<u32>,
-    enter: Vec<u32>,
-}
 
 impl Contact<'_> {
     /// Iterates until the goal is reached or the iterations are used up.
@@ -78,7 +77,7 @@ impl Contact<'_> {
             set = vec![self.highest_point()];
         }
         let (mut pairs, mut iterations, mut least, mut stalled) = (0, 0, f64::INFINITY, 0);
-        let mut gap = LARGEST_GAP;
+        let (mut gap, mut damping, mut previous) = (LARGEST_GAP, 1.0, usize::MAX);
         loop {
             iterations += 1;
             pairs += self.solve_on(&set, gap * self.scale);
@@ -118,7 +117,12 @@ impl Contact<'_> {
                 }
                 Goal::Start => {}
             }
-            set = exchange(&set, &wrong);
+            if iterations > UNDAMPED_ITERATIONS {
+                damping = damped(damping, changes >= previous);
+            }
+            previous = changes;
+            // As on the line: of neighbouring wrong points of a row those next to the edge change sides first.
+            set = exchange(&set, &wrong, damping, self.heights.len());
             if set.is_empty() {
                 set = vec![self.highest_point()];
             }
@@ -136,22 +140,62 @@ impl Contact<'_> {
         (0..self.heights.len()).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0) as u32
     }
 
-    /// Solves `w + ubar = z` on the set at the given load, up to root mean square gaps in m.
+    /// Solves `w + ubar = z` on the set at the given load, up to root mean square gaps in m; returns the pairs of
+    /// transforms.
     fn solve_on(&mut self, set: &[u32], gap: f64) -> usize {
         let load = self.mean_pressure * self.pressure.len() as f64;
+        if direct::is_worth_it(set.len(), self.pressure.len())
+            && let Some(pairs) = self.solve_directly(set, load)
+        {
+            return pairs;
+        }
         let mut t: Vec<f64> = set.iter().map(|i| self.pressure[*i as usize]).collect();
         let (heights, interrupt) = (self.heights, self.interrupt);
         let mut system = SetSystem { space: &mut *self.space, set, heights, interrupt };
         let pairs = system.solve(&mut t, load, gap);
+        self.place(set, &t);
+        pairs + 1
+    }
+
+    /// The same by dense factors, with corrections as long as they lower the residual. `None` if the matrix is singular.
+    fn solve_directly(&mut self, set: &[u32], load: f64) -> Option<usize> {
+        let kernel = self.space.kernel();
+        let dense = Dense::with_influence(set, kernel.at_origin().abs(), |i, j| {
+            kernel.between(set[i], set[j])
+        });
+        let heights: Vec<f64> = set.iter().map(|i| self.heights[*i as usize]).collect();
+        let mut pressure = dense.solve(&heights, load)?;
+        self.place(set, &pressure);
+        let mut residual = self.residual(set, self.displacement_scale());
+        for pairs in 1..=MOST_CORRECTIONS {
+            if residual <= ROUND_OFF {
+                return Some(pairs);
+            }
+            let gaps: Vec<f64> = set.iter().map(|i| -self.separation(*i as usize)).collect();
+            let correction = dense.solve(&gaps, load - pressure.iter().sum::<f64>())?;
+            let before = pressure.clone();
+            pressure.iter_mut().zip(correction).for_each(|(t, dt)| *t += dt);
+            self.place(set, &pressure);
+            let next = self.residual(set, self.displacement_scale());
+            if next >= residual {
+                self.place(set, &before);
+                return Some(pairs + 2);
+            }
+            residual = next;
+        }
+        Some(1 + MOST_CORRECTIONS)
+    }
+
+    /// Puts the pressures on the set and computes displacements and mean separation.
+    fn place(&mut self, set: &[u32], pressure: &[f64]) {
         self.pressure.fill(0.0);
-        set.iter().zip(&t).for_each(|(i, t)| self.pressure[*i as usize] = *t);
+        set.iter().zip(pressure).for_each(|(i, t)| self.pressure[*i as usize] = *t);
         self.space.displacement(&self.pressure, &mut self.displacement);
         let gaps: Vec<f64> = set
             .iter()
             .map(|i| self.heights[*i as usize] - self.displacement[*i as usize])
             .collect();
         self.mean_separation = mean(&gaps);
-        pairs + 1
     }
 
     /// Largest separation on the set over the scale of displacements, or the relative error of the load, whichever is
@@ -204,21 +248,4 @@ impl Contact<'_> {
     fn drop_tension(&mut self) {
         self.pressure.iter_mut().for_each(|t| *t = t.max(0.0));
     }
-}
-
-/// The next contact set.
-fn exchange(set: &[u32], wrong: &Violations) -> Vec<u32> {
-    let mut leave = wrong.leave.iter().peekable();
-    let mut enter = wrong.enter.iter().copied().peekable();
-    let mut next = Vec::with_capacity(set.len() + wrong.enter.len());
-    for i in set {
-        while let Some(new) = enter.next_if(|new| new < i) {
-            next.push(new);
-        }
-        if leave.next_if_eq(&i).is_none() {
-            next.push(*i);
-        }
-    }
-    next.extend(enter);
-    next
 }

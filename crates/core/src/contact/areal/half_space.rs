@@ -86,6 +86,31 @@ pub(super) struct ArealHalfSpace {
     /// Stiffness in Pa/m that stands for that of the mean where a set of points is filtered.
     mean_stiffness: f64,
     transform: Transform,
+    /// Displacement by a unit pressure at point 0, once it was asked for.
+    kernel: Option<Vec<f64>>,
+}
+
+/// Displacements in m/Pa by unit pressures.
+#[derive(Clone, Copy)]
+pub(super) struct Kernel<'a> {
+    points: [usize; 2],
+    values: &'a [f64],
+}
+
+impl Kernel<'_> {
+    /// Displacement of the point under the pressure.
+    pub fn at_origin(self) -> f64 {
+        self.values[0]
+    }
+
+    /// Displacement of the point `i` by a pressure at the point `j`.
+    pub fn between(self, i: u32, j: u32) -> f64 {
+        let [nx, ny] = self.points;
+        let (i, j) = (i as usize, j as usize);
+        let across = (i % nx + nx - j % nx) % nx;
+        let along = (i / nx + ny - j / nx) % ny;
+        self.values[along * nx + across]
+    }
 }
 
 /// Direction of an application of the operator.
@@ -111,11 +136,30 @@ impl ArealHalfSpace {
         let longest = [symbol[1 % symbol.len()], symbol[ny % symbol.len()]];
         let softest = longest.iter().map(|c| c.norm()).fold(0.0, f64::max);
         let (periods, direction) = (body.periods, body.sliding.direction());
-        Self { points, periods, direction, symbol, mean_stiffness: softest.recip(), transform }
+        Self {
+            points,
+            periods,
+            direction,
+            symbol,
+            mean_stiffness: softest.recip(),
+            transform,
+            kernel: None,
+        }
     }
 
     pub fn points(&self) -> [usize; 2] {
         self.points
+    }
+
+    /// Displacements by unit pressures.
+    pub fn kernel(&mut self) -> Kernel<'_> {
+        if self.kernel.is_none() {
+            self.transform.real.fill(0.0);
+            self.transform.real[0] = 1.0;
+            self.apply(Direction::PressureToDisplacement);
+            self.kernel = Some(self.transform.real.clone());
+        }
+        Kernel { points: self.points, values: self.kernel.as_deref().unwrap_or_default() }
     }
 
     /// Displacement in m (mean zero) under a pressure in Pa.
@@ -248,4 +292,89 @@ fn signed(index: usize, n: usize) -> i64 {
 pub(super) fn mean(values: &[f64]) -> f64 {
     let first = values[0];
     first + values.iter().map(|x| x - first).sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rubber::Rubber;
+
+    fn body(rubber: &Rubber, thickness: Option<f64>) -> Body<'_> {
+        let sliding = Sliding { speed: 0.2, angle: 0.7 };
+        Body { rubber, sliding, periods: [1e-3, 0.6e-3], thickness }
+    }
+
+    fn field(n: usize, seed: f64) -> Vec<f64> {
+        (0..n).map(|i| ((i * i) as f64 * seed).sin()).collect()
+    }
+
+    #[test]
+    fn pressure_inverts_displacement_on_all_kinds_of_grids() {
+        let rubber = Rubber::table_2_1();
+        for points in [[16, 12], [15, 8], [8, 15], [13, 11], [2, 6]] {
+            for thickness in [None, Some(5e-5)] {
+                let mut space = ArealHalfSpace::new(body(&rubber, thickness), points);
+                let t = field(points[0] * points[1], 0.7);
+                let mean = mean(&t);
+                let mut w = vec![0.0; t.len()];
+                space.displacement(&t, &mut w);
+                for (back, t) in space.pressure(&w).iter().zip(&t) {
+                    approx::assert_abs_diff_eq!(*back, t - mean, epsilon = 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_operator_is_positive_definite_and_not_symmetric() {
+        let rubber = Rubber::table_2_1();
+        let points = [12, 9];
+        let mut space = ArealHalfSpace::new(body(&rubber, None), points);
+        let mut product = |a: &[f64], b: &[f64]| {
+            let mut w = vec![0.0; a.len()];
+            space.displacement(b, &mut w);
+            a.iter().zip(&w).map(|(a, w)| a * w).sum::<f64>()
+        };
+        let mut asymmetry = 0.0_f64;
+        for seed in 1..40 {
+            let a = field(108, 0.31 * f64::from(seed));
+            let b = field(108, 0.47 * f64::from(seed));
+            let energy = product(&a, &a);
+            assert!(energy > 0.0, "{seed}: {energy:e}");
+            asymmetry = asymmetry.max((product(&a, &b) - product(&b, &a)).abs() / energy);
+        }
+        assert!(asymmetry > 0.05, "{asymmetry}");
+    }
+
+    #[test]
+    fn the_power_of_the_pressure_is_the_work_on_the_slope_of_the_displacement() {
+        let rubber = Rubber::table_2_1();
+        for points in [[20, 14], [15, 9], [16, 15]] {
+            let n = points[0] * points[1];
+            let mut space = ArealHalfSpace::new(body(&rubber, None), points);
+            let t: Vec<f64> = field(n, 0.11).iter().map(|t| t.max(0.0)).collect();
+            let mut w = vec![0.0; n];
+            space.displacement(&t, &mut w);
+            let slope = space.slope(&w, false);
+            let work = t.iter().zip(&slope).map(|(t, s)| t * s).sum::<f64>() / n as f64;
+            let power = space.hysteretic_traction(&t);
+            assert!(power > 0.0);
+            approx::assert_relative_eq!(work, power, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_kernel_gives_the_displacement_by_a_sum() {
+        let rubber = Rubber::table_2_1();
+        let points = [7, 6];
+        let mut space = ArealHalfSpace::new(body(&rubber, None), points);
+        let t = field(42, 0.9);
+        let mut w = vec![0.0; 42];
+        space.displacement(&t, &mut w);
+        let kernel = space.kernel();
+        for i in 0..42 {
+            let sum: f64 = (0..42).map(|j| kernel.between(i, j) * t[j as usize]).sum();
+            approx::assert_abs_diff_eq!(sum, w[i as usize], epsilon = 1e-13 * kernel.at_origin());
+        }
+    }
 }

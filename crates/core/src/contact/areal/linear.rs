@@ -4,9 +4,12 @@ use super::half_space::{ArealHalfSpace, mean};
 use crate::numerics::Interrupt;
 use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
-/// Most directions kept between two restarts, and memory for them in numbers per grid point.
-const MOST_DIRECTIONS: usize = 40;
-const MOST_KEPT_PER_POINT: usize = 10;
+/// Most directions kept between two restarts.
+const MOST_DIRECTIONS: usize = 60;
+/// Numbers that they take at most: so many, or [`KEPT_PER_POINT`] a grid point if that is more.
+const MOST_KEPT: usize = 100_000_000;
+/// Numbers a grid point that the directions may take, on grids of any size.
+pub(super) const KEPT_PER_POINT: usize = 10;
 /// Restarts of one solve; what is left is for the next active-set iteration.
 const MOST_RESTARTS: usize = 6;
 
@@ -32,11 +35,10 @@ impl SetSystem<'_> {
         let missing = load - t.iter().sum::<f64>();
         t.iter_mut().zip(&punch).for_each(|(t, s)| *t += missing * s);
         let grid: usize = self.space.points().iter().product();
-        let directions =
-            (MOST_KEPT_PER_POINT * grid / m).clamp(MOST_KEPT_PER_POINT, MOST_DIRECTIONS);
-        // Gaps below the round-off of the heights cannot be closed.
-        let limits =
-            KrylovLimits { tolerance: tolerance * (m as f64).sqrt(), max_iterations: directions };
+        let limits = KrylovLimits {
+            tolerance: tolerance * (m as f64).sqrt(),
+            max_iterations: directions(grid, m),
+        };
         let mut pairs = 1;
         for _ in 0..MOST_RESTARTS {
             let mut gap = self.gap(t);
@@ -79,6 +81,8 @@ impl SetSystem<'_> {
         let m = self.set.len();
         let mut punch = vec![0.0; m];
         self.space.pressure_on(self.set, &vec![1.0; m], &mut punch);
+        // That of a lossy body may have both signs and next to no sum.
+        punch.iter_mut().for_each(|s| *s = s.max(0.0));
         let sum: f64 = punch.iter().sum();
         if sum > 0.0 {
             punch.iter_mut().for_each(|s| *s /= sum);
@@ -87,6 +91,16 @@ impl SetSystem<'_> {
         }
         punch
     }
+}
+
+/// Directions kept for a set of `m` points.
+fn directions(grid: usize, m: usize) -> usize {
+    (kept(grid) / m).clamp(1, MOST_DIRECTIONS)
+}
+
+/// Numbers that directions may take on a grid.
+pub(super) fn kept(grid: usize) -> usize {
+    MOST_KEPT.min(MOST_DIRECTIONS.saturating_mul(grid)).max(KEPT_PER_POINT.saturating_mul(grid))
 }
 
 /// Pressures with sum zero for displacements on the set.

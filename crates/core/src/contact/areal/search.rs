@@ -69,7 +69,7 @@ impl ArealContact {
         let mut previous: Option<(f64, f64)> = None;
         let mut best = self.solve(guess.exp())?;
         let mut area = best.contact_area_fraction;
-        for _ in 1..MOST_SOLVES {
+        for solve in 1..MOST_SOLVES {
             if (area / fraction - 1.0).abs() <= tolerance || upper - lower < SAME_PRESSURE {
                 break;
             }
@@ -82,6 +82,10 @@ impl ArealContact {
             let slope = previous.map_or(1.0, |(x, e)| (error - e) / (guess - x));
             previous = error.is_finite().then_some((guess, error));
             guess = next(guess, error, slope, lower, upper);
+            // A secant that comes from one side only hardly narrows the bracket.
+            if solve % 3 == 0 && (upper - lower).is_finite() {
+                guess = 0.5 * (lower + upper);
+            }
             let near = self.solve_near(guess.exp(), best.pressure.clone())?;
             area = near.contact_area_fraction;
             if distance(area) < distance(best.contact_area_fraction) {

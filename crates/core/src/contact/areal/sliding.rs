@@ -6,8 +6,9 @@ use super::super::solution::displacement_scale;
 use super::active_set::{Contact, Goal, Outcome};
 use super::edges::ArealEdges;
 use super::half_space::{ArealHalfSpace, Body, Sliding, mean};
+use super::linear::kept;
 use super::solution::{ArealSolution, Fields};
-use super::surface::{ArealSurface, coarser, resample};
+use super::surface::{ArealSurface, coarser, prolong, resample};
 use crate::numerics::Interrupt;
 use crate::rubber::{FrequencyRange, Viscoelastic};
 
@@ -26,16 +27,20 @@ pub struct ArealSetup<'a> {
     pub memory_limit: Option<u64>,
 }
 
-/// Numbers of eight bytes per grid point that a solve holds at once, with the coarser grids: four of spectra and
-/// symbol, ten of fields, up to eleven of the Krylov space and its vectors, the sets, and a third of the operator for
-/// the coarser grids.
-const NUMBERS_PER_POINT: u64 = 30;
+/// Numbers of eight bytes per grid point that a solve holds beside the directions of the linear solver: four of spectra and
+/// symbol, nine of fields, five on the contact set, and two for the coarser grids.
+const NUMBERS_PER_POINT: u64 = 20;
 
-/// Estimated most memory in bytes of a solve on a grid of `nx` by `ny` points: 240 bytes a point, 4.0e9 for 4096 by
-/// 4096. Contacts of a few per cent need half of it.
+/// Estimated most memory in bytes of a solve on a grid of `nx` by `ny` points, for contact everywhere: 240 bytes a point,
+/// 4.0e9 for 4096 by 4096, on large grids; up to 640 bytes a point on those below 1000 by 1000.
 pub fn memory_bytes(nx: usize, ny: usize) -> u64 {
-    (nx as u64).saturating_mul(ny as u64).saturating_mul(8 * NUMBERS_PER_POINT)
+    let points = nx.saturating_mul(ny);
+    let fields = NUMBERS_PER_POINT.saturating_mul(points as u64);
+    fields.saturating_add(kept(points) as u64).saturating_mul(8)
 }
+
+/// Largest step in the logarithm of the pressure where it falls from that of full contact.
+const PRESSURE_STEP: f64 = 0.15;
 
 /// One of the nested grids.
 struct Grid {
@@ -147,7 +152,34 @@ impl ArealContact {
         }
         drop(full);
         let start = self.start(mean_pressure)?;
-        self.solve_from(mean_pressure, start)
+        match self.solve_from(mean_pressure, start) {
+            Err(ContactError::NotConverged { .. }) => self.solve_from_full_contact(mean_pressure),
+            other => other,
+        }
+    }
+
+    /// As [`Self::solve`], by a fall of the pressure from full contact in steps, whose contact sets are close to each
+    /// other. Where nearly all of the modulus is loss, sets from far away do not settle.
+    fn solve_from_full_contact(
+        &mut self,
+        mean_pressure: f64,
+    ) -> Result<ArealSolution, ContactError> {
+        let full = self.full_contact_pressure();
+        let highest = -full.iter().fold(0.0, |a: f64, b| a.min(*b));
+        let mut pressure: Vec<f64> = full.iter().map(|t| highest + t).collect();
+        drop(full);
+        let steps = ((highest / mean_pressure).ln() / PRESSURE_STEP).ceil().max(1.0);
+        let (mut cost, mut scale) = (0.0, None);
+        for step in 1..steps as usize {
+            let p = highest * (mean_pressure / highest).powf(step as f64 / steps);
+            let factor = p / mean(&pressure);
+            pressure.iter_mut().for_each(|t| *t *= factor);
+            let mut contact = self.finest.contact(pressure, p, scale, &self.interrupt);
+            cost += contact.solve(Goal::Start).pairs as f64;
+            check_interrupt(&self.interrupt)?;
+            (pressure, scale) = (contact.pressure, Some(contact.scale));
+        }
+        self.solve_from(mean_pressure, Start { pressure, scale, cost })
     }
 
     /// As [`Self::solve`], from pressures at another mean pressure: their contact set is near the one sought.
@@ -179,7 +211,7 @@ impl ArealContact {
         let (mut cost, mut scale) = (0.0, None);
         for grid in &mut self.coarser {
             let next = grid.space.points();
-            let start = resample(&pressure, points, next);
+            let start = prolong(&pressure, points, next);
             let mut contact = grid.contact(start, mean_pressure, scale, &self.interrupt);
             let outcome = contact.solve(Goal::Start);
             check_interrupt(&self.interrupt)?;
@@ -188,7 +220,7 @@ impl ArealContact {
             cost += outcome.pairs as f64 * pressure.len() as f64;
         }
         let total = (finest[0] * finest[1]) as f64;
-        Ok(Start { pressure: resample(&pressure, points, finest), scale, cost: cost / total })
+        Ok(Start { pressure: prolong(&pressure, points, finest), scale, cost: cost / total })
     }
 
     fn solve_from(

@@ -100,6 +100,19 @@ pub(super) fn resample(values: &[f64], from: [usize; 2], to: [usize; 2]) -> Vec<
     result
 }
 
+/// Pressures on a finer grid, linear between points, where more than half of the points around them, by their weight in the
+/// interpolation, are in contact: contacts on coarse grids are rather too large.
+pub(super) fn prolong(pressure: &[f64], from: [usize; 2], to: [usize; 2]) -> Vec<f64> {
+    let mut fine = resample(pressure, from, to);
+    let inside: Vec<f64> = pressure.iter().map(|t| f64::from(u8::from(*t > 0.0))).collect();
+    for (t, part) in fine.iter_mut().zip(resample(&inside, from, to)) {
+        if part <= 0.5 {
+            *t = 0.0;
+        }
+    }
+    fine
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
