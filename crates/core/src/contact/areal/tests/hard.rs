@@ -75,7 +75,7 @@ fn a_modulus_ratio_of_ten_thousand_converges_at_all_speeds() {
 fn flat_plateaus_and_a_single_spike_are_carried() {
     let rubber = Rubber::table_2_1();
     let points = [64, 48];
-    let plateau = |k: usize| if (k % 64 / 8 + k / 64 / 8) % 3 == 0 { 2e-5 } else { 0.0 };
+    let plateau = |k: usize| if (k % 64 / 8 + k / 64 / 8).is_multiple_of(3) { 2e-5 } else { 0.0 };
     let plateaus: Vec<f64> = (0..64 * 48).map(plateau).collect();
     let mut spike = vec![0.0; 64 * 48];
     // Off the coarser grids.
