@@ -98,7 +98,10 @@ impl Contact<'_> {
                 }
                 Goal::Solution { tolerance } => {
                     if changes == 0 {
-                        stalled = if residual < 0.5 * least { 0 } else { stalled + 1 };
+                        // A start that is better than what was asked for is not improved yet.
+                        let asked = gap < residual;
+                        stalled =
+                            if residual < 0.5 * least { 0 } else { stalled + usize::from(asked) };
                         least = least.min(residual);
                     }
                     if changes == 0 && (residual <= tolerance || stalled == STALLED_ITERATIONS) {
@@ -111,8 +114,10 @@ impl Contact<'_> {
                     gap = if changes > 0 {
                         (GAP_PER_CHANGE * part).clamp(FINAL_GAP * tolerance, LARGEST_GAP)
                     } else {
-                        // The largest gap is some multiple of the root mean square that was asked for.
-                        (FINAL_GAP * tolerance * gap / residual).max(SMALLEST_GAP * tolerance)
+                        // The largest gap is some multiple of the root mean square that was asked for, or less than that
+                        // from a good start.
+                        let multiple = (residual / gap).max(1.0);
+                        (FINAL_GAP * tolerance / multiple).max(SMALLEST_GAP * tolerance)
                     };
                 }
                 Goal::Start => {}

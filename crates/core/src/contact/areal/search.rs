@@ -29,31 +29,42 @@ impl ArealContact {
         fraction: f64,
         tolerance: f64,
     ) -> Result<ArealSolution, ContactError> {
+        let nearest = self.solve_near_area(fraction, tolerance)?;
+        let found = nearest.contact_area_fraction;
+        if (found / fraction - 1.0).abs() <= tolerance {
+            return Ok(nearest);
+        }
+        Err(self.not_reached(fraction, found, nearest.mean_pressure))
+    }
+
+    /// As [`Self::solve_for_area`], but the contact with the nearest area that was found: on a grid the area of a lossy rubber
+    /// jumps by about a point.
+    ///
+    /// # Errors
+    /// As [`Self::solve_for_area`]; [`ContactError::AreaNotReached`] of a flat surface alone.
+    pub fn solve_near_area(
+        &mut self,
+        fraction: f64,
+        tolerance: f64,
+    ) -> Result<ArealSolution, ContactError> {
         check(fraction, tolerance)?;
         let full = self.full_contact_pressure();
         let lowest = full.iter().fold(0.0, |a: f64, b| a.min(*b));
         let deviation = euclidean_norm(&full) / (full.len() as f64).sqrt();
         drop(full);
-        let [nx, ny] = self.points();
-        let not_reached = |found, pressure| ContactError::AreaNotReached {
-            wanted: fraction,
-            found,
-            pressure,
-            points: nx * ny,
-        };
         if lowest == 0.0 {
-            return Err(not_reached(1.0, 0.0));
+            return Err(self.not_reached(fraction, 1.0, 0.0));
         }
         if fraction == 1.0 {
             return self.solve(-lowest);
         }
         let guess = deviation.ln() + place(fraction);
-        let nearest = self.search(fraction, tolerance, guess.min((-lowest).ln()))?;
-        let found = nearest.contact_area_fraction;
-        if (found / fraction - 1.0).abs() <= tolerance {
-            return Ok(nearest);
-        }
-        Err(not_reached(found, nearest.mean_pressure))
+        self.search(fraction, tolerance, guess.min((-lowest).ln()))
+    }
+
+    fn not_reached(&self, wanted: f64, found: f64, pressure: f64) -> ContactError {
+        let points = self.points().iter().product();
+        ContactError::AreaNotReached { wanted, found, pressure, points }
     }
 
     /// The contact whose area is the nearest that was found.
@@ -86,7 +97,11 @@ impl ArealContact {
             if solve % 3 == 0 && (upper - lower).is_finite() {
                 guess = 0.5 * (lower + upper);
             }
-            let near = self.solve_near(guess.exp(), best.pressure.clone())?;
+            let near = match self.solve_near(guess.exp(), best.pressure.clone()) {
+                // From the coarsest grid it may.
+                Err(ContactError::NotConverged { .. }) => self.solve(guess.exp())?,
+                solved => solved?,
+            };
             area = near.contact_area_fraction;
             if distance(area) < distance(best.contact_area_fraction) {
                 best = near;

@@ -71,6 +71,22 @@ fn a_modulus_ratio_of_ten_thousand_converges_at_all_speeds() {
     }
 }
 
+/// A search for an area ends with pressures that differ by next to nothing.
+#[test]
+fn a_start_that_is_nearly_the_solution_is_brought_to_it() {
+    let rubber = Rubber::table_2_1();
+    let points = [96, 96];
+    let heights = rough(points, 12, 0.3);
+    let mut areal = contact(&rubber, 0.05, 0.0, &heights, points, [1e-3, 1e-3]);
+    let solution = areal.solve(3e5).unwrap();
+    for change in [1e-4, 1e-7, 1e-9, 1e-10, 1e-13] {
+        let near = areal.solve_near(3e5 * (1.0 + change), solution.pressure.clone()).unwrap();
+        assert_complementary(&near);
+        let rise = near.mean_pressure / solution.mean_pressure - 1.0;
+        approx::assert_relative_eq!(rise, change, max_relative = 1e-2);
+    }
+}
+
 #[test]
 fn flat_plateaus_and_a_single_spike_are_carried() {
     let rubber = Rubber::table_2_1();
