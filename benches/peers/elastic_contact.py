@@ -100,7 +100,7 @@ def write_profile(numpy, heights):
 
 def run_asperity(binary, profile, *load, fields=False):
     options = [*profile, "--modulus", MODULUS_MPA, "--poisson", POISSON, "--speed", 1, *load]
-    return solve(binary, *options, *(["--fields", FOLDER / "fields.csv"] if fields else []))
+    return solve(binary, *options, *(["--fields", FOLDER / "fields.csv", "--force"] if fields else []))
 
 
 def pressures_of_asperity(numpy):

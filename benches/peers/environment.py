@@ -34,10 +34,10 @@ def build_asperity():
     return Path(json.loads(metadata)["target_directory"]) / "release" / "asperity"
 
 
-def solve(binary, *options):
-    """What `asperity solve bem --json` says, and the seconds of the whole process."""
+def solve(binary, *options, contact="bem"):
+    """What `asperity solve bem --json`, or another contact, says, and the seconds of the whole process."""
     start = time.perf_counter()
-    command = [binary, "solve", "bem", "--json", *map(str, options)]
+    command = [binary, "solve", contact, "--json", *map(str, options)]
     done = subprocess.run(command, capture_output=True, text=True)
     whole = time.perf_counter() - start
     if done.returncode:
