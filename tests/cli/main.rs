@@ -18,6 +18,7 @@ mod road;
 mod rubber;
 mod rubber_sweeps;
 mod solve;
+mod solve_areal;
 mod solve_fem;
 mod start;
 mod synth;

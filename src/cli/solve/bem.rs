@@ -114,7 +114,7 @@ impl Bem {
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
-        for warning in material.warnings(&shape, self.speed.mm_to_m()) {
+        for warning in material.warnings(shape.excited_wavelengths(), self.speed.mm_to_m()) {
             note(quiet, format_args!("warning: {warning}"));
         }
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;

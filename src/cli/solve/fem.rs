@@ -152,7 +152,7 @@ impl Fem {
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
-        for warning in material.warnings(&shape, self.speed.mm_to_m()) {
+        for warning in material.warnings(shape.excited_wavelengths(), self.speed.mm_to_m()) {
             note(quiet, format_args!("warning: {warning}"));
         }
         let profile = rigid_profile(&shape);

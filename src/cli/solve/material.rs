@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::shape::Shape;
 use crate::cli::{CliError, values};
 use asperity::rubber::{
     FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
@@ -84,9 +83,9 @@ impl Material {
     }
 
     /// Warnings: what looks like a mistake in its file, and extrapolations beyond the measurement of the rubber, which are
-    /// the shift to its temperature and the frequencies that the profile excites at a speed in m/s.
-    pub(super) fn warnings(&self, shape: &Shape, speed: f64) -> Vec<String> {
-        let excited = FrequencyRange::excited(shape.excited_wavelengths(), [speed]);
+    /// the shift to its temperature and the frequencies that waves of these lengths in m excite at a speed in m/s.
+    pub(super) fn warnings(&self, wavelengths: Vec<f64>, speed: f64) -> Vec<String> {
+        let excited = FrequencyRange::excited(wavelengths, [speed]);
         let extrapolations = self.data.extrapolations(excited);
         self.oddities.iter().cloned().chain(extrapolations).collect()
     }

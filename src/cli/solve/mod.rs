@@ -2,19 +2,25 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `areal` | the steady sliding contact of a surface that is rough in both directions |
+//! | `areal_shape` | the areal surface of a single problem: superposed sines or a map |
 //! | `bem` | the steady sliding contact on the linear viscoelastic half-space |
 //! | `error_estimate` | the error of a single solve, as it is printed |
 //! | `fem` | sliding contact at finite deformation |
 //! | `fem_output` | what `asperity solve fem` prints and writes |
+//! | `map_file` | a height map of an instrument or of a text file |
 //! | `material` | the rubber of a single problem |
 //! | `profile_file` | a periodic profile in a text file of two columns |
 //! | `resolution` | what `asperity solve fem` requires of a mesh, and its warnings about a coarse one |
 //! | `shape` | the profile of a single problem: superposed sines or a file |
 
+mod areal;
+mod areal_shape;
 mod bem;
 mod error_estimate;
 mod fem;
 mod fem_output;
+mod map_file;
 mod material;
 mod profile_file;
 mod resolution;
@@ -28,6 +34,7 @@ use super::CliError;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Solve {
+    Areal(Box<areal::Areal>),
     Bem(Box<bem::Bem>),
     Fem(Box<fem::Fem>),
 }
@@ -35,6 +42,7 @@ pub(super) enum Solve {
 impl Solve {
     pub(super) fn run(self, quiet: bool) -> Result<(), CliError> {
         match self {
+            Self::Areal(areal) => areal.run(quiet),
             Self::Bem(bem) => bem.run(quiet),
             Self::Fem(fem) => fem.run(quiet),
         }

@@ -18,6 +18,9 @@ use crate::error_kind::{ErrorKind, HasKind};
 const DIFFERENCES: usize = 3;
 /// Convergence on the half-space, where contact edges are read between grid points.
 pub const HALF_SPACE: Orders = Orders { friction: 4.0, area: 8.0 };
+/// Convergence of an areal half-space: along the curved edges of its contacts the points are off by half a spacing, some to
+/// one side and some to the other.
+pub const AREAL: Orders = Orders { friction: 4.0, area: 2.0 };
 /// Convergence of finite elements, whose area is known to a fraction of an element.
 pub const FINITE_ELEMENTS: Orders = Orders { friction: 4.0, area: 2.0 };
 /// Weight of a relative error of the area in friction as a function of area. Tables of road surfaces have
