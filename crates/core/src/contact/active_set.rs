@@ -5,12 +5,12 @@
 //! The linear systems are solved by GMRES, preconditioned from the left, so that its tolerance
 //! is one of pressure: near a contact edge the sign of a small pressure decides.
 
-use super::approximate::{Approximate, Inverses};
 use super::direct::{self, Dense};
 use super::half_space::HalfSpace;
+use super::preconditioner::Preconditioner;
 use super::solution::displacement_scale;
 use crate::numerics::Interrupt;
-use crate::numerics::krylov::{KrylovLimits, KrylovReport, euclidean_norm, gmres};
+use crate::numerics::krylov::{KrylovLimits, euclidean_norm, gmres};
 
 /// How accurately a grid is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,8 +37,6 @@ pub(super) struct Contact<'a> {
     /// Displacement under `pressure`.
     pub displacement: Vec<f64>,
     pub mean_separation: f64,
-    /// Inverses for the linear solves.
-    pub inverses: Inverses,
     /// Ends the iteration early, without convergence.
     pub interrupt: &'a Interrupt,
 }
@@ -72,12 +70,8 @@ const RESTART_ITERATION: usize = 60;
 pub(super) const UNDAMPED_ITERATIONS: usize = 3;
 /// Smallest fraction of a run of wrong points that changes sides.
 const LEAST_DAMPING: f64 = 0.1;
-/// A coarse grid is left once no more than this part of the contact points, or of the points next to them, are wrong:
-/// the next grid changes more.
-const SETTLED_PART: usize = 50;
 /// Iterations after which a coarse grid is left, converged or not.
 const START_ITERATIONS: usize = 40;
-/// Most Krylov iterations with factors.
 const MOST_KRYLOV_ITERATIONS: usize = 120;
 /// Most corrections of a direct solve, and the residual below which none is made.
 const MOST_CORRECTIONS: usize = 5;
@@ -135,9 +129,7 @@ impl Contact<'_> {
                 return outcome(false);
             }
             match goal {
-                Goal::Start
-                    if changes * SETTLED_PART <= set.len() || iteration == START_ITERATIONS =>
-                {
+                Goal::Start if changes == 0 || iteration == START_ITERATIONS => {
                     self.drop_tension();
                     return outcome(true);
                 }
@@ -228,30 +220,7 @@ impl Contact<'_> {
     }
 
     fn iterate_on(&mut self, set: &[u32], tolerance: f64, load: f64) -> usize {
-        let points = self.pressure.len();
-        let mut applications = 0;
-        if let Some(most) = self.inverses.most_with_the_filter(set.len(), points) {
-            let filter = Approximate::filter(self.space, self.kernel, set);
-            let report = self.iterate_with(&filter, set, [tolerance, load], most);
-            // Two more for the first residual and the last displacement.
-            applications = report.iterations + 2;
-            if report.iterations < most || !self.inverses.give_up_the_filter(most, set.len()) {
-                return applications;
-            }
-        }
-        let inverse = self.inverses.factors(self.kernel, set);
-        let report = self.iterate_with(&inverse, set, [tolerance, load], MOST_KRYLOV_ITERATIONS);
-        self.inverses.keep(inverse);
-        applications + report.iterations + 2
-    }
-
-    fn iterate_with(
-        &mut self,
-        preconditioner: &Approximate,
-        set: &[u32],
-        [tolerance, load]: [f64; 2],
-        max_iterations: usize,
-    ) -> KrylovReport {
+        let preconditioner = Preconditioner::new(self.space, self.kernel, set);
         let mut t: Vec<f64> = set.iter().map(|i| self.pressure[*i as usize]).collect();
         preconditioner.add_force(load - t.iter().sum::<f64>(), &mut t);
         let mut r = vec![0.0; set.len()];
@@ -264,7 +233,7 @@ impl Contact<'_> {
         // Corrections below the round-off of the pressures are not needed.
         let limits = KrylovLimits {
             tolerance: (tolerance * euclidean_norm(&correction)).max(1e-15 * euclidean_norm(&t)),
-            max_iterations,
+            max_iterations: MOST_KRYLOV_ITERATIONS,
         };
         let mut displaced = vec![0.0; set.len()];
         let operator = |v: &[f64], out: &mut [f64]| {
@@ -273,7 +242,8 @@ impl Contact<'_> {
         };
         let report = gmres(operator, &mut correction, limits, self.interrupt);
         self.place(set, t.iter().zip(&correction).map(|(t, dt)| t + dt));
-        report
+        // Two more for the first residual and the last displacement.
+        report.iterations + 2
     }
 
     /// Largest separation on the set over the scale of displacements, or the relative error of the load, whichever is
@@ -403,7 +373,6 @@ mod tests {
             pressure: vec![1e4; n],
             displacement: vec![0.0; n],
             mean_separation: 0.0,
-            inverses: Inverses::default(),
             interrupt: &Interrupt::default(),
         };
         let outcome = contact.solve(Goal::Solution { tolerance: 0.0 });

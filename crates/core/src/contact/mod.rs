@@ -11,8 +11,6 @@
 //! |---|---|
 //! | [`half_space`] | the operator from pressure to displacement, by FFT |
 //! | `patches`, `preconditioner` | runs of contact points; the operator's approximate inverse on them |
-//! | `inverse` | an approximate inverse by factors of the matrix on the set |
-//! | `approximate` | which of the two a linear solve takes |
 //! | `hierarchical`, `influence` | compressed matrices and their factors; the entries of these matrices |
 //! | `active_set` | the contact set and the pressures on one grid |
 //! | `direct` | small contacts by dense factors |
@@ -32,13 +30,11 @@ pub mod sliding;
 pub mod solution;
 
 mod active_set;
-mod approximate;
 mod direct;
 mod edges;
 mod error;
 mod hierarchical;
 mod influence;
-mod inverse;
 mod patches;
 pub(crate) mod preconditioner;
 

@@ -1,7 +1,6 @@
 //! The sliding contact on nested grids.
 
 use super::active_set::{Contact, Goal, Outcome};
-use super::approximate::Inverses;
 use super::edges::EdgeReader;
 use super::error::ContactError;
 use super::half_space::HalfSpace;
@@ -210,18 +209,17 @@ impl SlidingContact {
         let mut pressure = vec![mean_pressure; coarsest.heights.len()];
         let mut coarser_edges = coarsest.edges.clone();
         let mut applications = 0.0;
-        let mut inverses = Inverses::default();
         for grid in &mut self.coarser {
             let start = refine(&pressure, &coarser_edges, grid.heights.len());
-            let mut contact = grid.contact(start, mean_pressure, inverses, &self.interrupt);
+            let mut contact = grid.contact(start, mean_pressure, &self.interrupt);
             let outcome = contact.solve(Goal::Start);
             check_interrupt(&self.interrupt)?;
-            (pressure, inverses) = (contact.pressure, contact.inverses.on_the_next_grid());
+            pressure = contact.pressure;
             applications += (outcome.applications * grid.heights.len()) as f64 / points as f64;
             coarser_edges.clone_from(&grid.edges);
         }
         let start = refine(&pressure, &coarser_edges, points);
-        let mut contact = self.finest.contact(start, mean_pressure, inverses, &self.interrupt);
+        let mut contact = self.finest.contact(start, mean_pressure, &self.interrupt);
         let outcome = contact.solve(Goal::Solution { tolerance: INNER_TOLERANCE });
         check_interrupt(&self.interrupt)?;
         applications += (outcome.applications * points) as f64 / points as f64;
@@ -259,7 +257,6 @@ impl Grid {
         &'a mut self,
         pressure: Vec<f64>,
         mean_pressure: f64,
-        inverses: Inverses,
         interrupt: &'a Interrupt,
     ) -> Contact<'a> {
         Contact {
@@ -270,7 +267,6 @@ impl Grid {
             kernel: &self.kernel,
             mean_pressure,
             mean_separation: 0.0,
-            inverses,
             interrupt,
         }
     }
