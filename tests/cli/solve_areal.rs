@@ -81,8 +81,7 @@ fn a_bisinusoid_closes_at_the_pressure_of_johnson() {
 
 #[test]
 fn an_area_has_its_pressure_and_a_layer_is_stiffer() {
-    let base =
-        "solve areal --size-mm 1 --mode 2,1:0.004 --mode 1,-2:0.003 --speed 10 --points 64 --json";
+    let base = "solve areal --size-mm 1 --mode 2,1:0.004 --mode 1,-2:0.003 --speed 10 --points 64 --quiet --json";
     let found = asperity(&format!("{base} --area 0.2")).json();
     approx::assert_relative_eq!(number(&found, "contact_area_fraction"), 0.2, max_relative = 1e-6);
     let pressure = number(&found, "pressure_mpa");
@@ -180,6 +179,9 @@ fn mistakes_name_the_option_or_the_file_and_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("rows.txt"), "1 2 3 4\n".repeat(4)).unwrap();
     fs::write(folder.path().join("hole.txt"), "1 2 nan 4\n".repeat(4)).unwrap();
+    fs::write(folder.path().join("commas.txt"), "0,5\t1,5\t2\t1\n".repeat(8)).unwrap();
+    let spike = "0 0 0 0 0 0 0 0\n".repeat(7) + "0 0 0 1e20 0 0 0 0\n";
+    fs::write(folder.path().join("spike.txt"), spike).unwrap();
     let load = "--speed 10 --pressure 0.1";
     for (arguments, part) in [
         (format!("--mode 1,0:0.01 {load}"), "--size-mm"),
@@ -203,6 +205,16 @@ fn mistakes_name_the_option_or_the_file_and_what_to_do() {
             format!("--map {{}}/hole.txt --map-unit um --size-mm 1 {load}"),
             "line 1, column 3: `nan` is not a finite number",
         ),
+        (
+            format!("--map {{}}/commas.txt --map-unit um --size-mm 1 {load}"),
+            "`0,5` looks like a number with a decimal comma",
+        ),
+        (
+            format!("--map {{}}/spike.txt --map-unit mm --size-mm 1 {load}"),
+            "are no surface: check --map-unit",
+        ),
+        (format!("--size-mm 1,2,3 --mode 1,0:0.01 {load}"), "give one number, or two with a comma"),
+        (format!("--size-mm 1 --mode 1,0:0.01 --mirror {load}"), "--mirror"),
         (format!("--map {{}}/none.txt --map-unit um --size-mm 1 {load}"), "none.txt"),
         ("--size-mm 1 --mode 1,0:0.01 --speed 10".into(), "--pressure"),
     ] {
@@ -210,4 +222,21 @@ fn mistakes_name_the_option_or_the_file_and_what_to_do() {
         assert_eq!(outcome.code, 2, "{arguments}: {}", outcome.stderr);
         assert!(outcome.stderr.contains(part), "{arguments}: {}", outcome.stderr);
     }
+}
+
+#[test]
+fn a_grid_that_does_not_resolve_the_contact_is_told() {
+    // Friction of the wrong sign on the coarse grid, found by trying at random.
+    let coarse = asperity(
+        "solve areal --size-mm 0.1206,1.0623 --mode 8,-6:0.008155:5.226 --points 128,32 --speed 0.2826 --angle -41 --area 0.05",
+    );
+    assert_eq!(coarse.code, 0, "{}", coarse.stderr);
+    assert!(coarse.stderr.contains("grid points across on average, too few"), "{}", coarse.stderr);
+    assert!(coarse.stderr.contains("differs from that by the dissipation"), "{}", coarse.stderr);
+    // A grid beyond the memory is refused before it is made.
+    let error = asperity(
+        "solve areal --size-mm 1 --mode 2,1:0.004 --points 32768 --speed 10 --pressure 0.1",
+    )
+    .error(2);
+    assert!(error.contains("--memory-gb allows 4.5"), "{error}");
 }

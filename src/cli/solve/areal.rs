@@ -14,7 +14,6 @@ use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
 use crate::cli::{CliError, values};
-use asperity::contact::ContactError;
 use asperity::contact::areal::{
     ArealContact, ArealSetup, ArealSolution, ArealSurface, Sliding, memory_bytes,
 };
@@ -53,7 +52,7 @@ pub(in crate::cli) struct Areal {
     #[command(flatten)]
     shape: ArealShapeOptions,
     /// Sliding speed in mm/s.
-    #[arg(long, value_name = "MM_S", value_parser = values::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM_S", value_parser = speed, allow_negative_numbers = true)]
     speed: f64,
     /// Direction in which the rubber slides, in degrees from x towards y.
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = values::finite, allow_negative_numbers = true)]
@@ -66,7 +65,7 @@ pub(in crate::cli) struct Areal {
     #[arg(long, value_name = "FRACTION", value_parser = values::fraction, allow_negative_numbers = true)]
     area: Option<f64>,
     /// Thickness in mm of a rubber layer that is bonded to a rigid base [default: a half-space].
-    #[arg(long, value_name = "MM", value_parser = values::positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", value_parser = thickness, allow_negative_numbers = true)]
     thickness_mm: Option<f64>,
     #[command(flatten)]
     material: MaterialOptions,
@@ -83,6 +82,22 @@ pub(in crate::cli) struct Areal {
     /// Overwrite a file that is there already.
     #[arg(long)]
     force: bool,
+}
+
+/// A thickness in mm that is no mistake.
+fn thickness(text: &str) -> Result<f64, String> {
+    match values::positive(text)? {
+        mm if (1e-6..=1e6).contains(&mm) => Ok(mm),
+        _ => Err(format!("{} is not from 1e-6 to 1e6", text.trim())),
+    }
+}
+
+/// A speed in mm/s as recipes allow it.
+fn speed(text: &str) -> Result<f64, String> {
+    match values::positive(text)? {
+        speed if (1e-9..=1e9).contains(&speed) => Ok(speed),
+        _ => Err(format!("{} is not from 1e-9 to 1e9", text.trim())),
+    }
 }
 
 /// What is printed; the names are the keys of the JSON object.
@@ -106,7 +121,7 @@ struct Summary {
 impl Areal {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         let material = self.material.material()?;
-        let shape = self.shape.build()?;
+        let shape = self.shape.build(|points| self.require_memory(points))?;
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));
         }
@@ -116,11 +131,13 @@ impl Areal {
         }
         refuse_to_overwrite(self.fields.as_deref(), "--fields", &self.inputs())?;
         refuse_existing(self.fields.as_deref(), self.force)?;
-        self.require_memory(&shape)?;
         let start = Instant::now();
         let refined = self.solve(material.rubber(), &shape)?;
         let summary = Summary::new(&refined, shape.points(), start.elapsed().as_secs_f64());
         summary.check()?;
+        for warning in unresolved(&refined.solution, shape.points()) {
+            note(quiet, format_args!("warning: {warning}"));
+        }
         if refined.error.is_none() {
             note(
                 quiet,
@@ -137,8 +154,7 @@ impl Areal {
     }
 
     /// Refuses what does not fit into the memory that may be taken.
-    fn require_memory(&self, shape: &ArealShape) -> Result<(), CliError> {
-        let [nx, ny] = shape.points();
+    fn require_memory(&self, [nx, ny]: [usize; 2]) -> Result<(), CliError> {
         let needed = memory_bytes(nx, ny) as f64 / BYTES_PER_GB;
         if needed <= self.memory_gb {
             return Ok(());
@@ -194,12 +210,13 @@ impl Areal {
                 let distance = (nearest.contact_area_fraction - fraction).abs();
                 // Further off than two points of the grid is another contact.
                 if distance * heights.len() as f64 > 2.0 {
-                    return Err(CliError::from(ContactError::AreaNotReached {
-                        wanted: fraction,
-                        found: nearest.contact_area_fraction,
-                        pressure: nearest.mean_pressure,
-                        points: heights.len(),
-                    }));
+                    return Err(CliError::failure(format!(
+                        "no pressure gives the contact area fraction {fraction} on {} points: the nearest found is {:.6} at \
+                         {} MPa; ask for that, or take more points",
+                        heights.len(),
+                        nearest.contact_area_fraction,
+                        significant(nearest.mean_pressure.pa_to_mpa())
+                    )));
                 }
                 Ok(nearest)
             }
@@ -242,7 +259,12 @@ impl Summary {
             self.residual,
         ];
         if results.iter().all(|value| value.is_finite()) {
-            return Ok(());
+            if self.contact_area_fraction > 0.0 {
+                return Ok(());
+            }
+            return Err(CliError::failure(
+                "the contact is smaller than this grid shows: give more points or more pressure",
+            ));
         }
         Err(CliError::failure(
             "the result is not finite: lengths, moduli or pressure are too large or too small for \
@@ -269,6 +291,43 @@ impl Summary {
             ("time", significant(self.seconds) + " s"),
         ])
     }
+}
+
+/// Fewest points across a contact spot for reliable area and friction.
+const RESOLVED_SPOT: f64 = 4.0;
+/// Largest difference of the friction by work and by dissipation, relative, on a grid that resolves the contact; and the
+/// dissipation of a rubber that is as good as elastic.
+const RESOLVED_WORK: f64 = 0.1;
+const LEAST_FRICTION: f64 = 1e-5;
+
+/// Warnings where the grid is too coarse for the contact.
+fn unresolved(solution: &ArealSolution, [nx, ny]: [usize; 2]) -> Vec<String> {
+    let touches = |j: usize, i: usize| solution.pressure[(j % ny) * nx + i % nx] > 0.0;
+    let places = || (0..ny).flat_map(|j| (0..nx).map(move |i| (j, i)));
+    let touching = places().filter(|(j, i)| touches(*j, *i)).count() as f64;
+    let ends = |down: usize, right: usize| {
+        places().filter(|(j, i)| touches(*j, *i) && !touches(j + down, i + right)).count() as f64
+    };
+    let spot = touching / ends(0, 1).max(ends(1, 0));
+    let mut warnings = Vec::new();
+    if spot < RESOLVED_SPOT {
+        warnings.push(format!(
+            "a contact spot is {} grid points across on average, too few for reliable numbers: give more points or more \
+             pressure",
+            significant(spot)
+        ));
+    }
+    let (work, power) = (solution.friction_coefficient, solution.hysteretic_friction);
+    let apart = (work - power).abs() > RESOLVED_WORK * power.abs();
+    if apart && power.abs() > LEAST_FRICTION {
+        warnings.push(format!(
+            "the friction by the work on the slopes, {}, differs from that by the dissipation of the rubber, {}: the grid does \
+             not resolve the contact; give more points",
+            significant(work),
+            significant(power)
+        ));
+    }
+    warnings
 }
 
 fn view(solution: &ArealSolution) -> OnGrid {

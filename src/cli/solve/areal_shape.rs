@@ -21,6 +21,8 @@ const DEFAULT_POINTS_PER_WAVE: usize = 32;
 const LEAST_POINTS_PER_WAVE: usize = 3;
 /// Most waves along a direction.
 const MOST_WAVES: i32 = 1 << 20;
+/// Largest range of heights of a map over its longer period.
+const MOST_HEIGHT: f64 = 10.0;
 /// Steps of a map across its end over the largest inside, from which on it is one that does not close.
 const CLIFF: f64 = 3.0;
 
@@ -43,18 +45,25 @@ pub(super) struct ArealShapeOptions {
     #[arg(long, value_name = "FILE")]
     pub(super) map: Option<PathBuf>,
     /// Unit of a --map of text: nm, um, mm or m; never guessed.
-    #[arg(long, value_name = "UNIT", requires = "map", value_parser = values::length_unit)]
+    #[arg(long, value_name = "UNIT", requires = "map", conflicts_with = "modes", value_parser = values::length_unit)]
     map_unit: Option<LengthUnit>,
     /// Mirror the map along both directions, so that it closes: four times the points.
-    #[arg(long, requires = "map")]
+    #[arg(long, requires = "map", conflicts_with = "modes")]
     mirror: bool,
     /// Periods of the surface in mm along x and y; one number is both, or of a --map of heights the length of a row.
-    #[arg(long, value_name = "LX[,LY]", value_delimiter = ',', num_args = 1..=2, value_parser = values::positive, allow_negative_numbers = true)]
-    size_mm: Vec<f64>,
+    #[arg(long, value_name = "LX[,LY]", value_parser = parse_size, allow_negative_numbers = true)]
+    size_mm: Option<Pair<f64>>,
     /// Grid points along x and y; one number is both [default: 32 on each of the shortest waves of --mode and 256 or more;
     /// those of --map].
-    #[arg(long, value_name = "NX[,NY]", value_delimiter = ',', num_args = 1..=2, value_parser = values::count::<usize>, conflicts_with = "map")]
-    points: Vec<usize>,
+    #[arg(long, value_name = "NX[,NY]", value_parser = parse_points, conflicts_with = "map", allow_negative_numbers = true)]
+    points: Option<Pair<usize>>,
+}
+
+/// A number for x, and one for y if that differs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pair<T> {
+    x: T,
+    y: Option<T>,
 }
 
 /// One superposed sine.
@@ -122,16 +131,22 @@ impl ArealShape {
 }
 
 impl ArealShapeOptions {
+    /// The surface, if `admit` does not refuse its numbers of points.
+    ///
     /// # Errors
-    /// [`CliError::Input`].
-    pub(super) fn build(&self) -> Result<ArealShape, CliError> {
-        let size = |axis: usize| self.size_mm.get(axis).map(|mm| mm.mm_to_m());
+    /// [`CliError::Input`], and those of `admit`.
+    pub(super) fn build(
+        &self,
+        admit: impl Fn([usize; 2]) -> Result<(), CliError>,
+    ) -> Result<ArealShape, CliError> {
+        let given = self.size_mm.map(|size| [Some(size.x.mm_to_m()), size.y.map(Units::mm_to_m)]);
         let Some(path) = &self.map else {
-            let length = size(0).unwrap_or_default();
-            let periods = [length, size(1).unwrap_or(length)];
-            return superpose(&self.modes, periods, &self.points).map_err(CliError::input);
+            let [length, width] = given.unwrap_or_default();
+            let length = length.unwrap_or_default();
+            let points = grid_points(&self.modes, self.points).map_err(CliError::input)?;
+            admit(points)?;
+            return Ok(superpose(&self.modes, [length, width.unwrap_or(length)], points));
         };
-        let given = size(0).map(|length| [Some(length), size(1)]);
         let mut map = read_map(path, self.map_unit, given)?;
         for n in map.points {
             if !(LEAST_POINTS..=MOST_POINTS).contains(&n) {
@@ -142,6 +157,20 @@ impl ArealShapeOptions {
                 )));
             }
         }
+        let [low, high] = [f64::min, f64::max]
+            .map(|least| map.heights.iter().copied().reduce(least).unwrap_or_default());
+        let longest = map.periods[0].max(map.periods[1]);
+        if high - low > MOST_HEIGHT * longest {
+            return Err(CliError::input(format!(
+                "{}: heights from {} to {} mm on a map of {} mm are no surface: check --map-unit, --size-mm, and numbers \
+                 that stand for missing points",
+                path.display(),
+                low.m_to_mm(),
+                high.m_to_mm(),
+                longest.m_to_mm()
+            )));
+        }
+        admit(if self.mirror { map.points.map(|n| 2 * n) } else { map.points })?;
         if self.mirror {
             map = mirrored(&map);
         }
@@ -150,13 +179,14 @@ impl ArealShapeOptions {
     }
 }
 
-fn superpose(modes: &[Mode], periods: [f64; 2], points: &[usize]) -> Result<ArealShape, String> {
+/// Points along x and y for the modes.
+fn grid_points(modes: &[Mode], given: Option<Pair<usize>>) -> Result<[usize; 2], String> {
     let shortest = |axis: usize| {
         modes.iter().map(|mode| mode.waves[axis].unsigned_abs() as usize).max().unwrap_or(1).max(1)
     };
     let along = |axis: usize| -> Result<usize, String> {
         let waves = shortest(axis);
-        let Some(&given) = points.get(axis).or(points.first()) else {
+        let Some(Pair { x, y }) = given else {
             let wanted = (DEFAULT_POINTS_PER_WAVE * waves).next_power_of_two().max(DEFAULT_POINTS);
             return if wanted <= MOST_POINTS {
                 Ok(wanted)
@@ -166,6 +196,7 @@ fn superpose(modes: &[Mode], periods: [f64; 2], points: &[usize]) -> Result<Area
                 ))
             };
         };
+        let given = if axis == 0 { x } else { y.unwrap_or(x) };
         if !(LEAST_POINTS..=MOST_POINTS).contains(&given) {
             return Err(format!(
                 "--points is {given}, it must be from {LEAST_POINTS} to {MOST_POINTS}"
@@ -180,7 +211,10 @@ fn superpose(modes: &[Mode], periods: [f64; 2], points: &[usize]) -> Result<Area
         }
         Ok(given)
     };
-    let points = [along(0)?, along(1)?];
+    Ok([along(0)?, along(1)?])
+}
+
+fn superpose(modes: &[Mode], periods: [f64; 2], points: [usize; 2]) -> ArealShape {
     let [nx, ny] = points;
     let height = |j: usize, i: usize| -> f64 {
         let place = [i as f64 / nx as f64, j as f64 / ny as f64];
@@ -192,7 +226,7 @@ fn superpose(modes: &[Mode], periods: [f64; 2], points: &[usize]) -> Result<Area
     };
     let heights = (0..ny).flat_map(|j| (0..nx).map(move |i| (j, i))).map(|(j, i)| height(j, i));
     let map = Map { points, periods, heights: heights.collect() };
-    Ok(ArealShape { map, modes: modes.to_vec(), warning: None })
+    ArealShape { map, modes: modes.to_vec(), warning: None }
 }
 
 /// The map and its mirror images along x, y and both.
@@ -238,6 +272,28 @@ fn cliff(map: &Map) -> Option<String> {
             end / inside
         )
     })
+}
+
+/// Lengths in mm that are no mistake.
+const SIZES_MM: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
+fn parse_size(text: &str) -> Result<Pair<f64>, String> {
+    parse_pair(text, |part| match values::positive(part)? {
+        mm if SIZES_MM.contains(&mm) => Ok(mm),
+        _ => Err(format!("{} is not from 1e-6 to 1e6", part.trim())),
+    })
+}
+
+fn parse_points(text: &str) -> Result<Pair<usize>, String> {
+    parse_pair(text, |part| values::count(part.trim()))
+}
+
+fn parse_pair<T>(text: &str, one: impl Fn(&str) -> Result<T, String>) -> Result<Pair<T>, String> {
+    match text.split(',').collect::<Vec<_>>()[..] {
+        [x] => Ok(Pair { x: one(x)?, y: None }),
+        [x, y] => Ok(Pair { x: one(x)?, y: Some(one(y)?) }),
+        _ => Err("give one number, or two with a comma between them".into()),
+    }
 }
 
 fn parse_mode(text: &str) -> Result<Mode, String> {
@@ -298,7 +354,7 @@ mod tests {
     #[test]
     fn a_mode_is_a_sine_on_the_grid_of_both_directions() {
         let modes = [parse_mode("2,1:1000:0.3").unwrap()];
-        let shape = superpose(&modes, [2.0, 3.0], &[32, 16]).unwrap();
+        let shape = superpose(&modes, [2.0, 3.0], [32, 16]);
         assert_eq!((shape.points(), shape.halvings()), ([32, 16], 4));
         let (i, j) = (5, 11);
         let (x, y) = (2.0 * 5.0 / 32.0, 3.0 * 11.0 / 16.0);
@@ -310,9 +366,12 @@ mod tests {
         approx::assert_relative_eq!(shape.excited_wavelengths(0.0)[0], 1.0, max_relative = 1e-12);
         let along_crests = (-3.0_f64).atan2(1.0);
         assert!(shape.excited_wavelengths(along_crests).is_empty());
-        let default = superpose(&modes, [1.0, 1.0], &[]).unwrap();
-        assert_eq!(default.points(), [256, 256]);
-        let few = superpose(&[parse_mode("9,1:1").unwrap()], [1.0; 2], &[16]).unwrap_err();
+        assert_eq!(grid_points(&modes, None), Ok([256, 256]));
+        let both = parse_points("64,32").unwrap();
+        assert_eq!(grid_points(&modes, Some(both)), Ok([64, 32]));
+        assert!(parse_points("8,8,8").is_err() && parse_size("1,0").is_err());
+        let sixteen = parse_points("16").ok();
+        let few = grid_points(&[parse_mode("9,1:1").unwrap()], sixteen).unwrap_err();
         assert!(few.contains("at least 27, better 288"), "{few}");
     }
 

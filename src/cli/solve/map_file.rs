@@ -58,7 +58,7 @@ pub(super) fn read_map(
 
 fn of_instrument(scan: ScanFile) -> Result<Map, String> {
     let Grid::Map { columns, rows, spacing_x, spacing_y } = scan.grid else {
-        return Err("holds a line, not a map: solve it with `solve bem --profile`".into());
+        return Err("holds a line, not a map: a recipe reads it (section [ingest])".into());
     };
     let missing = scan.missing();
     if let Some(first) = scan.heights.iter().position(|z| z.is_nan()) {
@@ -93,6 +93,12 @@ fn rows(text: &str) -> Result<Vec<(usize, Vec<f64>)>, String> {
                 )
             })
         };
+        if let Some(number) = decimal_comma(data) {
+            return Err(format!(
+                "line {}: `{number}` looks like a number with a decimal comma: write decimal points",
+                index + 1
+            ));
+        }
         let cells = cells(data);
         let numbers: Result<Vec<f64>, String> = cells.into_iter().enumerate().map(number).collect();
         found.push((index + 1, numbers?));
@@ -109,6 +115,21 @@ fn cells(data: &str) -> Vec<&str> {
             cells => cells.split_whitespace().collect(),
         })
         .collect()
+}
+
+/// A number such as `0,5` beside others that are separated otherwise, on a line without a decimal point.
+fn decimal_comma(data: &str) -> Option<&str> {
+    let is_digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+    let tokens: Vec<&str> =
+        data.split([';', ' ', '\t']).filter(|token| !token.is_empty()).collect();
+    if data.contains('.') || tokens.len() < 2 {
+        return None;
+    }
+    tokens.into_iter().find(|token| {
+        token.split_once(',').is_some_and(|(whole, rest)| {
+            is_digit(whole.chars().next_back()) && is_digit(rest.chars().next())
+        })
+    })
 }
 
 fn of_text(text: &str, unit: LengthUnit, size: Option<[Option<f64>; 2]>) -> Result<Map, String> {
@@ -158,7 +179,8 @@ fn positioned(rows: &[(usize, Vec<f64>)], unit: LengthUnit) -> Result<Map, Strin
     let outer = rows.len() / inner;
     if inner < 2 || outer < 2 || inner * outer != rows.len() {
         return Err(format!(
-            "has {} points, whose first row has {inner}: a map has rows of the same number of points, two or more",
+            "has {} points, whose first row has {inner}: give them row by row or column by column, each of the same number \
+             of points, two or more",
             rows.len()
         ));
     }
@@ -249,6 +271,8 @@ mod tests {
             ("1 2 3 4\n1 2 x 4\n", size, "line 2, column 3: `x` is not a number"),
             ("1 2 nan 4\n", size, "line 1, column 3: `nan` is not a finite number"),
             ("1;;3;4\n", size, "line 1, column 2"),
+            ("0,5\t0,25\t1\t2\n", size, "line 1: `0,5` looks like a number with a decimal comma"),
+            ("1;2\n0,5;0,25\n", size, "line 2: `0,5` looks like"),
             ("1 2 3 4\n", None, "give the length of a row as --size-mm"),
             ("0 0 1\n1 0 1\n", size, "leave --size-mm out"),
             ("0 0 1\n1 0 1\n2 0 1\n", None, "has 3 points, whose first row has 3"),

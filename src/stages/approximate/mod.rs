@@ -194,6 +194,7 @@ pub fn run(
                 format!("{waves} waves: the fit gives the wave of {wavelength_mm:.4} mm zero amplitude: the scans show no roughness of its own there")
             },
         ));
+        warnings.extend(mostly_absent(waves, &fit.sine_scales()));
         scales.extend(scale_rows(waves, &fit, &intervals));
         fits.push(fit_row(waves, &fit, &correlations.average, beyond.join("; ")));
         fitted.extend(fitted_rows(waves, rule, &fit, &correlations.average));
@@ -234,6 +235,19 @@ fn finer_than(waves: u32, shortest_lag: f64, shortest_wave: f64) -> Option<Strin
             shortest_lag.m_to_mm(),
             shortest_wave.m_to_mm(),
             (RESOLUTION * shortest_wave).m_to_um()
+        )
+    })
+}
+
+/// What a fit is that has found an amplitude for fewer than half of its waves: no ladder of octaves.
+fn mostly_absent(waves: u32, scales: &[SineScale]) -> Option<String> {
+    let present = scales.iter().filter(|scale| scale.amplitude != 0.0).count();
+    (2 * present < scales.len()).then(|| {
+        format!(
+            "{waves} waves: only {present} of {} have an amplitude, so the surfaces are far from the road, whose roughness is in \
+             all octaves: fit fewer waves, begin with longer ones (approximate.shortest_wavelength_mm), or take measured \
+             profiles (realise.methods)",
+            scales.len()
         )
     })
 }
@@ -372,5 +386,22 @@ impl Correlations {
             (pairs > 0).then_some(CorrelationSample { lag, value, pairs })
         };
         self.average.iter().filter_map(rest).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ladders_with_fewer_than_half_of_their_waves_are_told() {
+        let scales = |amplitudes: &[f64]| -> Vec<SineScale> {
+            let scale = |amplitude: &f64| SineScale { wavelength: 1e-3, amplitude: *amplitude };
+            amplitudes.iter().map(scale).collect()
+        };
+        assert_eq!(mostly_absent(4, &scales(&[0.0, 1e-6, 0.0, 2e-6])), None);
+        assert_eq!(mostly_absent(1, &scales(&[1e-6])), None);
+        let warning = mostly_absent(5, &scales(&[0.0, 1e-6, 0.0, 2e-6, 0.0])).unwrap();
+        assert!(warning.starts_with("5 waves: only 2 of 5 have an amplitude"), "{warning}");
     }
 }
