@@ -209,7 +209,7 @@ impl Areal {
                 let nearest = contact.solve_near_area(fraction, AREA_TOLERANCE)?;
                 let distance = (nearest.contact_area_fraction - fraction).abs();
                 // Further off than two points of the grid is another contact.
-                if distance * heights.len() as f64 > 2.0 {
+                if distance > AREA_TOLERANCE * fraction && distance * heights.len() as f64 > 2.0 {
                     return Err(CliError::failure(format!(
                         "no pressure gives the contact area fraction {fraction} on {} points: the nearest found is {:.6} at \
                          {} MPa; ask for that, or take more points",
