@@ -9,7 +9,7 @@ use clap::{ArgGroup, Args};
 use serde::Serialize;
 
 use super::areal_shape::{ArealShape, ArealShapeOptions};
-use super::error_estimate::ErrorEstimate;
+use super::error_estimate::{ErrorEstimate, printed, require_finite};
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
@@ -251,32 +251,23 @@ impl Summary {
 
     /// Refuses a result that is not finite: lengths or moduli far from those of any road overflow.
     fn check(&self) -> Result<(), CliError> {
-        let results = [
+        require_finite(&[
             self.friction_coefficient,
             self.lateral_coefficient,
             self.contact_area_fraction,
             self.mean_separation_mm,
             self.residual,
-        ];
-        if results.iter().all(|value| value.is_finite()) {
-            if self.contact_area_fraction > 0.0 {
-                return Ok(());
-            }
-            return Err(CliError::failure(
-                "the contact is smaller than this grid shows: give more points or more pressure",
-            ));
+        ])?;
+        if self.contact_area_fraction > 0.0 {
+            return Ok(());
         }
         Err(CliError::failure(
-            "the result is not finite: lengths, moduli or pressure are too large or too small for \
-             double precision; check their units",
+            "the contact is smaller than this grid shows: give more points or more pressure",
         ))
     }
 
     fn table(&self) -> String {
-        let error = |value: fn(&ErrorEstimate) -> f64| {
-            let known = self.error_estimate.as_ref().map(value);
-            known.map_or_else(|| "unknown".into(), |error| format!("{error:.1e}"))
-        };
+        let error = |value: fn(&ErrorEstimate) -> f64| printed(self.error_estimate.as_ref(), value);
         aligned(&[
             ("friction coefficient", significant(self.friction_coefficient)),
             ("estimated error", error(|estimate| estimate.total)),

@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
-use super::error_estimate::ErrorEstimate;
+use super::error_estimate::{ErrorEstimate, printed, require_finite};
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use super::shape::{Shape, ShapeOptions};
@@ -260,26 +260,16 @@ impl Summary {
 
     /// Refuses a result that is not finite: lengths or moduli far from those of any road overflow.
     fn check(&self) -> Result<(), CliError> {
-        let results = [
+        require_finite(&[
             self.friction_coefficient,
             self.contact_area_fraction,
             self.mean_separation_mm,
             self.residual,
-        ];
-        if results.iter().all(|value| value.is_finite()) {
-            return Ok(());
-        }
-        Err(CliError::failure(
-            "the result is not finite: lengths, moduli or pressure are too large or too small for \
-             double precision; check their units",
-        ))
+        ])
     }
 
     fn table(&self) -> String {
-        let error = |value: fn(&ErrorEstimate) -> f64| {
-            let known = self.error_estimate.as_ref().map(value);
-            known.map_or_else(|| "unknown".into(), |error| format!("{error:.1e}"))
-        };
+        let error = |value: fn(&ErrorEstimate) -> f64| printed(self.error_estimate.as_ref(), value);
         aligned(&[
             ("friction coefficient", significant(self.friction_coefficient)),
             ("estimated error", error(|estimate| estimate.total)),

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::cli::CliError;
 use asperity::contact::refine::GridError;
 
 /// Estimated absolute errors, those of the friction coefficient first. For a single solve at a given load,
@@ -30,4 +31,26 @@ impl ErrorEstimate {
             contact_area_fraction: error.contact_area_fraction,
         }
     }
+}
+
+/// An estimated error as it is printed.
+pub(super) fn printed(
+    estimate: Option<&ErrorEstimate>,
+    error: fn(&ErrorEstimate) -> f64,
+) -> String {
+    estimate.map_or_else(|| "unknown".into(), |estimate| format!("{:.1e}", error(estimate)))
+}
+
+/// Refuses results that are not finite: lengths or moduli far from those of any road overflow.
+///
+/// # Errors
+/// [`CliError::Failure`].
+pub(super) fn require_finite(results: &[f64]) -> Result<(), CliError> {
+    if results.iter().all(|value| value.is_finite()) {
+        return Ok(());
+    }
+    Err(CliError::failure(
+        "the result is not finite: lengths, moduli or pressure are too large or too small for double precision; check their \
+         units",
+    ))
 }

@@ -95,28 +95,13 @@ impl<'a> Ensemble<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::worth::tests::row;
     use super::*;
     use crate::numerics::statistics::MeanEstimate;
-    use crate::stages::bem::Given;
     use crate::stages::realise::SurfaceKind;
     use crate::surface::SineScale;
     use crate::surface::realisation::random_phases;
     use std::f64::consts::TAU;
-
-    fn row(friction_coefficient: f64, interpolation_error: f64) -> CurveRow {
-        CurveRow {
-            kind: SurfaceKind::sines(1),
-            realisation: 1,
-            speed_mm_s: 1.0,
-            given: Given::Area,
-            contact_area_fraction: 0.1,
-            pressure_mpa: 1.0,
-            friction_coefficient,
-            interpolation_error,
-            discretisation_error: None,
-            left_out_error: 0.0,
-        }
-    }
 
     /// 95 of 100 intervals hold the true mean where the number is given beforehand. Here it follows
     /// from the same sample, which stops early when its spread is small by chance: a few less.

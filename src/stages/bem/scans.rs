@@ -72,7 +72,7 @@ struct Replicate {
 /// What is known of the choice of scans before anything is solved.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scans {
-    /// Of all approximations. None if the recipe has no scans or sets `bem.estimate_scan_error` to false.
+    /// For all approximations; empty if the recipe has no scans or sets `bem.estimate_scan_error` to false.
     replicates: Vec<Replicate>,
     /// Windows that the surfaces of a kind are drawn of, where an accuracy of the averages is asked for.
     windows: BTreeMap<SurfaceKind, usize>,

@@ -10,8 +10,8 @@ pub(crate) const NEGLIGIBLE: f64 = 0.5;
 /// What more realisations cannot mend.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Worth {
-    /// Sines: the half widths of the 95 % intervals by the choice of scans, relative, at each value of the curves. None where
-    /// they are not known.
+    /// Sines: relative half widths of the 95 % intervals by the choice of scans, one for each value of the curves; empty if
+    /// unknown.
     Errors(Vec<f64>),
     /// Draws of this number of windows, one after the other: the scatter between the windows.
     Windows(usize),
@@ -96,12 +96,12 @@ fn draws_needed(friction: &[f64], windows: usize, left: f64) -> Option<usize> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::stages::bem::Given;
     use crate::stages::realise::SurfaceKind;
 
-    fn row(friction_coefficient: f64, interpolation_error: f64) -> CurveRow {
+    pub fn row(friction_coefficient: f64, interpolation_error: f64) -> CurveRow {
         CurveRow {
             kind: SurfaceKind::sines(1),
             realisation: 1,

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// What is known of the surfaces behind the averages.
 pub(super) struct Basis {
-    /// Windows of the scans; none where the recipe states the waves.
+    /// Number of windows of the scans; `None` if the recipe gives the waves itself.
     windows: Option<u32>,
     /// The window of every surface of one.
     window_of: BTreeMap<(SurfaceKind, u32), String>,

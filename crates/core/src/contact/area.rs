@@ -136,7 +136,8 @@ impl<'a> Search<'a> {
     }
 }
 
-fn check(fraction: f64, tolerance: f64) -> Result<(), ContactError> {
+/// Refuses what is no contact area fraction or no relative tolerance of one.
+pub(super) fn check(fraction: f64, tolerance: f64) -> Result<(), ContactError> {
     let out_of_range =
         |quantity, value, range| Err(ContactError::OutOfRange { quantity, value, range });
     if !(fraction > 0.0 && fraction <= 1.0) {

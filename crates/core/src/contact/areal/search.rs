@@ -1,6 +1,7 @@
 //! The pressure that gives a contact area.
 
 use super::super::ContactError;
+use super::super::area::check;
 use super::{ArealContact, ArealSolution};
 use crate::numerics::krylov::euclidean_norm;
 use statrs::function::erf::erf_inv;
@@ -122,16 +123,4 @@ fn next(here: f64, error: f64, slope: f64, lower: f64, upper: f64) -> f64 {
     let step = (-error / slope).clamp(-LARGEST_STEP, LARGEST_STEP);
     let there = here + step;
     if there > lower && there < upper { there } else { 0.5 * (lower + upper) }
-}
-
-fn check(fraction: f64, tolerance: f64) -> Result<(), ContactError> {
-    let out_of_range =
-        |quantity, value, range| Err(ContactError::OutOfRange { quantity, value, range });
-    if !(fraction > 0.0 && fraction <= 1.0) {
-        return out_of_range("the contact area fraction", fraction, "above 0 and at most 1");
-    }
-    if !(tolerance > 0.0 && tolerance < 1.0) {
-        return out_of_range("the tolerance of the contact area", tolerance, "between 0 and 1");
-    }
-    Ok(())
 }
