@@ -12,6 +12,7 @@
 //! | [`probe`] | the shortest wavelength that an instrument shows as it is |
 //! | [`ladder`], [`sine_fit`] | wavelengths of superposed sines, and their amplitudes |
 //! | [`wave`], [`realisation`] | sines, and surfaces of them with random phases |
+//! | [`map`] | heights over a plane: maps of instruments |
 //! | [`periodic`] | a scanned window as a periodic profile, and profiles with its spectrum |
 //! | [`synthesis`] | scans of a surface with known parameters |
 //! | `table_3_1` | the sines of the published tables |
@@ -22,6 +23,7 @@ pub mod faults;
 pub mod filter;
 pub mod form;
 pub mod ladder;
+pub mod map;
 pub mod parameters;
 pub mod periodic;
 pub mod probe;
@@ -42,6 +44,7 @@ mod table_3_1;
 pub use condition::{Conditioning, ConditioningError, ConditioningReport, condition};
 pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use ladder::Ladder;
+pub use map::HeightMap;
 pub use parameters::RoughnessParameters;
 pub use periodic::{Closure, PeriodicError, PeriodicProfile};
 pub use scan::{LineScan, RawScan};

@@ -1,0 +1,27 @@
+//! Heights over a plane: maps as instruments deliver them, and what is done with them.
+
+/// Heights on a grid of equal spacing along each direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightMap {
+    /// Name of the map (and of the window, after cutting), unique within a run.
+    pub name: String,
+    /// Points `[nx, ny]` along `x` and `y`.
+    pub points: [usize; 2],
+    /// Distances in m between neighbouring points along `x` and `y`.
+    pub spacing: [f64; 2],
+    /// Heights in m, growing towards the rubber, row by row: that of the point `(i, j)` at `x = i dx`, `y = j dy` is
+    /// `heights[j * nx + i]`. NaN where missing.
+    pub heights: Vec<f64>,
+}
+
+impl HeightMap {
+    /// Lengths in m along `x` and `y`, points times spacing: every point stands for one cell.
+    pub fn lengths(&self) -> [f64; 2] {
+        [0, 1].map(|axis| self.points[axis] as f64 * self.spacing[axis])
+    }
+
+    /// Number of missing heights.
+    pub fn missing(&self) -> usize {
+        self.heights.iter().filter(|z| z.is_nan()).count()
+    }
+}
