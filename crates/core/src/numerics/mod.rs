@@ -7,6 +7,7 @@
 //! | [`interpolation`] | cubic Hermite interpolants |
 //! | [`interrupt`] | a flag by which a user stops a long computation |
 //! | [`krylov`] | GMRES for matrix-free, nonsymmetric systems |
+//! | `plane` | Fourier transform of real fields over a plane |
 //! | [`statistics`] | means, spreads and confidence intervals of small samples, lines through points |
 
 pub mod bracket;
@@ -14,6 +15,7 @@ pub mod direct;
 pub mod interpolation;
 pub mod interrupt;
 pub mod krylov;
+pub(crate) mod plane;
 pub mod statistics;
 
 pub use interrupt::Interrupt;

@@ -2,7 +2,7 @@
 
 use super::super::half_space::compliance;
 use super::layer;
-use super::transform::Transform;
+use crate::numerics::plane::Transform;
 use crate::rubber::Viscoelastic;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;

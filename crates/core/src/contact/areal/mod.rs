@@ -15,7 +15,6 @@
 //! | module | what it does |
 //! |---|---|
 //! | `surface` | heights on a grid, and grids of half as many points |
-//! | `transform` | Fourier transform of real fields in two dimensions |
 //! | `layer` | compliance of a layer over that of a half-space |
 //! | `half_space` | the operator from pressure to displacement |
 //! | `linear` | pressures on a given contact set |
@@ -34,7 +33,6 @@ mod search;
 mod sliding;
 mod solution;
 mod surface;
-mod transform;
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,14 @@
 //! Heights over a plane: maps as instruments deliver them, and what is done with them.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`periodic`] | a map as a periodic surface without short waves |
+//! | [`phases`] | surfaces with the spectrum of a map or of lines, and other phases |
+
+pub mod periodic;
+pub mod phases;
+
+pub use periodic::{PeriodicMap, PeriodicMapError};
 
 /// Heights on a grid of equal spacing along each direction.
 #[derive(Debug, Clone, PartialEq)]

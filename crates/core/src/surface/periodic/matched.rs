@@ -7,6 +7,7 @@
 use crate::surface::realisation::random_phases;
 use crate::surface::wave::sample;
 use crate::surface::{SineScale, Wave};
+use rayon::prelude::*;
 use realfft::RealFftPlanner;
 use std::f64::consts::PI;
 
@@ -46,32 +47,43 @@ pub fn matched(waves: &[Wave], period: f64, seed: u64, realisation: u64) -> Matc
     let forward = RealFftPlanner::<f64>::new().plan_fft_forward(points);
     let mut spectrum = forward.make_output_vec();
     let mut heights = sample(&found, period, points);
-    let mut places: Vec<usize> = (0..points).collect();
     let mut iterations = 0;
     while iterations < MOST_ITERATIONS {
         iterations += 1;
-        // The heights of the original, in the order of those that were found.
-        places.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
-        let mut ranked = vec![0.0; points];
-        for (place, height) in places.iter().zip(&target) {
-            ranked[*place] = *height;
-        }
+        let mut ranked = in_the_order_of(&heights, &target);
         // The phases of that, with the amplitudes of the original. Buffers of the plan's own lengths cannot be refused.
         let _ = forward.process(&mut ranked, &mut spectrum);
         for (wave, order) in found.iter_mut().zip(&orders) {
             wave.phase = spectrum[*order].arg() + 0.5 * PI;
         }
         let next = sample(&found, period, points);
-        let change: f64 = next.iter().zip(&heights).map(|(a, b)| (a - b).powi(2)).sum();
+        let change = rms_difference(&next, &heights);
         heights = next;
-        if (change / points as f64).sqrt() <= STILL * rms {
+        if change <= STILL * rms {
             break;
         }
     }
     heights.sort_by(f64::total_cmp);
-    let apart: f64 = heights.iter().zip(&target).map(|(a, b)| (a - b).powi(2)).sum();
-    let mismatch = if rms > 0.0 { (apart / points as f64).sqrt() / rms } else { 0.0 };
+    let apart = rms_difference(&heights, &target);
+    let mismatch = if rms > 0.0 { apart / rms } else { 0.0 };
     Matched { waves: found, mismatch, iterations }
+}
+
+/// The `sorted` heights in the order of others: the lowest where the lowest of those is, and so on.
+pub(in crate::surface) fn in_the_order_of(heights: &[f64], sorted: &[f64]) -> Vec<f64> {
+    let mut places: Vec<usize> = (0..heights.len()).collect();
+    places.par_sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+    let mut ranked = vec![0.0; heights.len()];
+    for (place, height) in places.iter().zip(sorted) {
+        ranked[*place] = *height;
+    }
+    ranked
+}
+
+/// Root mean square difference of two fields.
+pub(in crate::surface) fn rms_difference(a: &[f64], b: &[f64]) -> f64 {
+    let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+    (square / a.len() as f64).sqrt()
 }
 
 #[cfg(test)]

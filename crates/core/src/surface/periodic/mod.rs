@@ -13,6 +13,7 @@
 mod matched;
 
 pub use matched::{Matched, matched};
+pub(super) use matched::{in_the_order_of, rms_difference};
 
 use super::{LineScan, Wave};
 use crate::error_kind::{ErrorKind, HasKind};
@@ -188,13 +189,23 @@ fn mirrored(mut heights: Vec<f64>) -> Vec<f64> {
 /// The last points pass into the first ones by weights of a raised cosine, and are left out at the end.
 fn blended(heights: &[f64]) -> Vec<f64> {
     let count = heights.len();
-    let overlap = ((BLENDED * count as f64) as usize).max(1);
+    let overlap = blended_points(count);
     let mut closed = heights[..count - overlap].to_vec();
     for (i, z) in closed.iter_mut().enumerate().take(overlap) {
-        let weight = 0.5 - 0.5 * (PI * (i as f64 + 0.5) / overlap as f64).cos();
+        let weight = blend_weight(i, overlap);
         *z = weight * *z + (1.0 - weight) * heights[count - overlap + i];
     }
     closed
+}
+
+/// Points at the end of a window of `count` that pass into as many at its beginning.
+pub(super) fn blended_points(count: usize) -> usize {
+    ((BLENDED * count as f64) as usize).max(1)
+}
+
+/// Weight of the beginning at its point `i` of `overlap`; the end has the rest.
+pub(super) fn blend_weight(i: usize, overlap: usize) -> f64 {
+    0.5 - 0.5 * (PI * (i as f64 + 0.5) / overlap as f64).cos()
 }
 
 /// Waves of at least the shortest wavelength by ascending wavelength, and the mean square of the others.

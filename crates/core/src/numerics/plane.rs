@@ -1,4 +1,4 @@
-//! Fourier transform of real fields on a grid, on all threads of rayon.
+//! Fourier transform of real fields over a plane, on a grid and on all threads of rayon.
 
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -12,7 +12,7 @@ const BLOCK: usize = 8;
 
 /// Transform of `nx` by `ny` real values, `x` fastest, to the `nx/2 + 1` by `ny` coefficients with wavenumbers
 /// `k_x >= 0`, `y` fastest, and back. It owns its buffers, so that an application allocates little.
-pub(super) struct Transform {
+pub(crate) struct Transform {
     nx: usize,
     ny: usize,
     row_forward: Arc<dyn RealToComplex<f64>>,
@@ -60,7 +60,6 @@ impl Transform {
     }
 
     /// From `spectrum`, which is destroyed, to `real`, not normalised.
-    #[cfg(test)]
     pub fn backward(&mut self) {
         let column_backward = &self.column_backward;
         let length = column_backward.get_inplace_scratch_len();
