@@ -1,4 +1,12 @@
 //! Heights over a plane: maps as instruments deliver them, and what is done with them.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`faults`], [`form`], [`gaps`] | spikes and jumped rows, polynomial surfaces, missing points to be filled |
+
+pub mod faults;
+pub mod form;
+pub mod gaps;
 
 /// Heights on a grid of equal spacing along each direction.
 #[derive(Debug, Clone, PartialEq)]
