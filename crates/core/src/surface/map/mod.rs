@@ -2,8 +2,10 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`mod@condition`] | faults, resampling, windows and form of a map, in one call |
 //! | [`faults`], [`form`], [`gaps`] | spikes and jumped rows, polynomial surfaces, missing points to be filled |
 
+pub mod condition;
 pub mod faults;
 pub mod form;
 pub mod gaps;

@@ -23,14 +23,16 @@ const ROUND_OFF: f64 = 1e-14;
 /// are on both sides. Cost is linear in the number of points.
 pub fn find_jumped_rows(map: &HeightMap, threshold: f64) -> Vec<usize> {
     let [columns, rows] = map.points;
-    let lines = Lines { heights: &map.heights, count: rows, length: columns, strides: [columns, 1] };
+    let lines =
+        Lines { heights: &map.heights, count: rows, length: columns, strides: [columns, 1] };
     lines.jumped(threshold, least_step(map))
 }
 
 /// Columns that jumped, ascending, as [`find_jumped_rows`] says.
 pub fn find_jumped_columns(map: &HeightMap, threshold: f64) -> Vec<usize> {
     let [columns, rows] = map.points;
-    let lines = Lines { heights: &map.heights, count: columns, length: rows, strides: [1, columns] };
+    let lines =
+        Lines { heights: &map.heights, count: columns, length: rows, strides: [1, columns] };
     lines.jumped(threshold, least_step(map))
 }
 
@@ -65,9 +67,8 @@ impl Lines<'_> {
     }
 
     fn jumped(&self, threshold: f64, least: f64) -> Vec<usize> {
-        let steps: Vec<f64> = (0..self.count.saturating_sub(1))
-            .map(|line| self.step(line, 0..self.length))
-            .collect();
+        let steps: Vec<f64> =
+            (0..self.count.saturating_sub(1)).map(|line| self.step(line, 0..self.length)).collect();
         let usual = median_of_valid(steps.iter().copied());
         let deviations: Vec<f64> = steps.iter().map(|step| step - usual).collect();
         let spread = DEVIATION_PER_MAD * median_of_valid(deviations.iter().map(|step| step.abs()));
@@ -75,7 +76,9 @@ impl Lines<'_> {
         let as_a_whole = |line: usize| {
             let quarters = (0..4).map(|k| k * self.length / 4..(k + 1) * self.length / 4);
             // A quarter that is not judged is NaN, and no objection.
-            !quarters.map(|part| (self.step(line, part) - usual) / deviations[line]).any(|share| share < 0.5)
+            !quarters
+                .map(|part| (self.step(line, part) - usual) / deviations[line])
+                .any(|share| share < 0.5)
         };
         let jumps: Vec<usize> = (0..steps.len())
             .filter(|&line| deviations[line].abs() > limit && as_a_whole(line))
