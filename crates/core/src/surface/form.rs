@@ -91,7 +91,7 @@ fn least_squares(basis: DMatrix<f64>, mut right_side: DVector<f64>) -> Option<DV
 }
 
 /// `(n, P_n(x))` for `n = 0, ..., order`, by `(n + 1) P_{n+1} = (2 n + 1) x P_n - n P_{n-1}`.
-fn legendre(x: f64, order: usize) -> impl Iterator<Item = (usize, f64)> {
+pub(super) fn legendre(x: f64, order: usize) -> impl Iterator<Item = (usize, f64)> {
     let mut pair = (1.0, x);
     (0..=order).map(move |n| {
         let value = pair.0;

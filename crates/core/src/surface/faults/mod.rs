@@ -29,7 +29,7 @@ pub use spikes::{SPIKE_HALF_WINDOW, remove_spikes};
 use statrs::statistics::{Data, OrderStatistics};
 
 /// Ratio of the standard deviation of a normal distribution to its median absolute deviation.
-const DEVIATION_PER_MAD: f64 = 1.482_602_218_505_602;
+pub(super) const DEVIATION_PER_MAD: f64 = 1.482_602_218_505_602;
 
 /// Sets heights outside `range`, in metres about the median height, to NaN; returns their indices.
 pub fn remove_out_of_range(heights: &mut [f64], range: [f64; 2]) -> Vec<usize> {
@@ -39,13 +39,13 @@ pub fn remove_out_of_range(heights: &mut [f64], range: [f64; 2]) -> Vec<usize> {
 }
 
 /// Median without the NaN; 0 where nothing is left.
-fn median_of_valid(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn median_of_valid(values: impl Iterator<Item = f64>) -> f64 {
     let valid: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
     if valid.is_empty() { 0.0 } else { Data::new(valid).median() }
 }
 
 /// Smallest difference other than 0 between neighbouring heights; 0 where there is none.
-fn smallest_step(heights: &[f64]) -> f64 {
+pub(super) fn smallest_step(heights: &[f64]) -> f64 {
     let steps = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let smallest = steps.filter(|&step| step > 0.0).fold(f64::INFINITY, f64::min);
     if smallest.is_finite() { smallest } else { 0.0 }

@@ -2,9 +2,15 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`mod@condition`] | faults, resampling, windows and form of a map, in one call |
+//! | [`faults`], [`form`], [`gaps`] | spikes and jumped rows, polynomial surfaces, missing points to be filled |
 //! | [`periodic`] | a map as a periodic surface without short waves |
 //! | [`phases`] | surfaces with the spectrum of a map or of lines, and other phases |
 
+pub mod condition;
+pub mod faults;
+pub mod form;
+pub mod gaps;
 pub mod periodic;
 pub mod phases;
 

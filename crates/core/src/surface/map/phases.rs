@@ -68,6 +68,17 @@ pub fn isotropic_map(
     seed: u64,
     realisation: u64,
 ) -> PeriodicMap {
+    random_map(|[qx, qy]| density(qx.hypot(qy)), period, shortest, seed, realisation)
+}
+
+/// As [`isotropic_map`], with a density that depends on the direction of `[q_x, q_y]` too; it must be the same at `-q`.
+pub fn random_map(
+    density: impl Fn([f64; 2]) -> f64,
+    period: f64,
+    shortest: f64,
+    seed: u64,
+    realisation: u64,
+) -> PeriodicMap {
     let periods = [period; 2];
     let points = resolving(periods, shortest);
     let [nx, ny] = points;
@@ -81,7 +92,7 @@ pub fn isotropic_map(
             if is_mean || !resolved || !is_kept([kx, ky], periods, shortest) {
                 continue;
             }
-            let power = density(TAU / period * kx.hypot(ky)) * cell;
+            let power = density([kx, ky].map(|k| TAU / period * k)) * cell;
             *coefficient = Complex64::new(power.max(0.0).sqrt() * (nx * ny) as f64, 0.0);
         }
     }
