@@ -110,7 +110,7 @@ pub enum MapConditioningError {
     },
     /// The map is smaller than one window or one cell.
     #[error(
-        "map {map} is {length_mm} mm long along {axis}, shorter than one {part} of {part_mm} mm ({key})"
+        "map {map} is {length_mm:.3} mm long along {axis}, shorter than one {part} of {part_mm:.3} mm ({key})"
     )]
     TooSmall {
         /// Name of the map.

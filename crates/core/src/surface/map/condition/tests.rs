@@ -91,7 +91,7 @@ fn an_oversampled_map_comes_to_half_its_resolution() {
     let error = condition_map(&map, &recipe("lateral_resolution_um = 1000")).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "map road is 0.3 mm long along y, shorter than one cell of 0.5 mm (lateral_resolution_um)"
+        "map road is 0.300 mm long along y, shorter than one cell of 0.500 mm (lateral_resolution_um)"
     );
 }
 
@@ -173,7 +173,7 @@ fn maps_of_which_nothing_is_left_are_errors() {
     );
     assert_eq!(
         error("window_length_mm = [20, 50]"),
-        "map road is 40 mm long along y, shorter than one window of 50 mm (window_length_mm)"
+        "map road is 40.000 mm long along y, shorter than one window of 50.000 mm (window_length_mm)"
     );
     let missing = map_of([40, 40], [1e-3, 1e-3], |_| f64::NAN);
     let error = condition_map(&missing, &recipe("")).unwrap_err();
