@@ -77,7 +77,7 @@ pub enum MapConditioningError {
         require: &'static str,
     },
     /// The number of heights is not that of the points, or there are none.
-    #[error("map {map}: {heights} heights for {columns} x {rows} points")]
+    #[error("map {map} has {heights} heights for {columns} x {rows} points")]
     Points {
         /// Name of the map.
         map: String,
@@ -108,10 +108,9 @@ pub enum MapConditioningError {
         /// Row, from 0.
         row: usize,
     },
-    /// The map is smaller than one window.
+    /// The map is smaller than one window or one cell.
     #[error(
-        "map {map}: {length_mm} mm long along {axis}, shorter than one window of {window_mm} mm \
-         (window_length_mm)"
+        "map {map} is {length_mm:.3} mm long along {axis}, shorter than one {part} of {part_mm:.3} mm ({key})"
     )]
     TooSmall {
         /// Name of the map.
@@ -120,11 +119,15 @@ pub enum MapConditioningError {
         axis: char,
         /// Length of the map along it in mm.
         length_mm: f64,
-        /// Length of a window along it in mm.
-        window_mm: f64,
+        /// `window` or `cell`.
+        part: &'static str,
+        /// Its length in mm.
+        part_mm: f64,
+        /// The parameter that sets it.
+        key: &'static str,
     },
     /// No window was kept.
-    #[error("map {map}: none of {windows} windows is left; the first: {reason}")]
+    #[error("map {map}: none of {windows} windows is kept; the first: {reason}")]
     NothingLeft {
         /// Name of the map.
         map: String,
@@ -207,9 +210,9 @@ pub fn condition_map(
     });
     let cells = blocks::block_means(cleaned, cell);
     if cells.heights.is_empty() {
-        // A cell is larger than the map: there is no window either.
         let axis = usize::from(cells.points[0] > 0);
-        return Err(too_small(map, axis, cell[axis] as f64 * map.spacing[axis]));
+        let length_mm = cell[axis] as f64 * map.spacing[axis] * 1e3;
+        return Err(too_small(map, axis, ("cell", length_mm, "lateral_resolution_um")));
     }
     let mut report = MapReport {
         map: map.name.clone(),
@@ -256,13 +259,14 @@ fn check_map(map: &HeightMap) -> Result<(), MapConditioningError> {
     }
 }
 
-fn too_small(map: &HeightMap, axis: usize, window: f64) -> MapConditioningError {
-    MapConditioningError::TooSmall {
-        map: map.name.clone(),
-        axis: ['x', 'y'][axis],
-        length_mm: map.lengths()[axis] * 1e3,
-        window_mm: window * 1e3,
-    }
+fn too_small(
+    map: &HeightMap,
+    axis: usize,
+    (part, part_mm, key): (&'static str, f64, &'static str),
+) -> MapConditioningError {
+    let length_mm = map.lengths()[axis] * 1e3;
+    let (map, axis) = (map.name.clone(), ['x', 'y'][axis]);
+    MapConditioningError::TooSmall { map, axis, length_mm, part, part_mm, key }
 }
 
 /// Cuts the windows, removes their form and reports on each.
@@ -278,8 +282,8 @@ fn cut(
     });
     let ranges = [0, 1].map(|axis| windows(map.points[axis], points[axis]));
     if let Some(axis) = ranges.iter().position(Vec::is_empty) {
-        let window = conditioning.window_length_mm.map_or(0.0, |window_mm| window_mm[axis] / 1e3);
-        return Err(too_small(map, axis, window));
+        let length_mm = conditioning.window_length_mm.map_or(0.0, |window_mm| window_mm[axis]);
+        return Err(too_small(map, axis, ("window", length_mm, "window_length_mm")));
     }
     let [columns, rows] = &ranges;
     report.cells_left_out = map.heights.len() - columns.len() * rows.len() * points[0] * points[1];

@@ -60,7 +60,7 @@ fn maps_that_are_none_are_told() {
     let map = || rough([9, 8]);
     assert_eq!(
         error(HeightMap { points: [9, 9], ..map() }),
-        "map road: 72 heights for 9 x 9 points"
+        "map road has 72 heights for 9 x 9 points"
     );
     assert!(error(HeightMap { points: [0, 9], heights: vec![], ..map() }).contains("0 heights"));
     assert_eq!(
@@ -89,7 +89,10 @@ fn an_oversampled_map_comes_to_half_its_resolution() {
     approx::assert_relative_eq!(report.windows[0].origin_mm[0], 5e-3, max_relative = 1e-12);
     approx::assert_relative_eq!(report.windows[0].origin_mm[1], 7.5e-3, max_relative = 1e-12);
     let error = condition_map(&map, &recipe("lateral_resolution_um = 1000")).unwrap_err();
-    assert!(matches!(error, MapConditioningError::TooSmall { axis: 'y', .. }), "{error}");
+    assert_eq!(
+        error.to_string(),
+        "map road is 0.300 mm long along y, shorter than one cell of 0.500 mm (lateral_resolution_um)"
+    );
 }
 
 #[test]
@@ -165,12 +168,12 @@ fn maps_of_which_nothing_is_left_are_errors() {
     let error = |keys: &str| condition_map(&holes, &recipe(keys)).unwrap_err().to_string();
     assert_eq!(
         error("window_length_mm = [20, 20]"),
-        "map road: none of 4 windows is left; the first: 50.0 % of the points are missing, \
+        "map road: none of 4 windows is kept; the first: 50.0 % of the points are missing, \
          the limit is 10.0 % (max_missing)"
     );
     assert_eq!(
         error("window_length_mm = [20, 50]"),
-        "map road: 40 mm long along y, shorter than one window of 50 mm (window_length_mm)"
+        "map road is 40.000 mm long along y, shorter than one window of 50.000 mm (window_length_mm)"
     );
     let missing = map_of([40, 40], [1e-3, 1e-3], |_| f64::NAN);
     let error = condition_map(&missing, &recipe("")).unwrap_err();

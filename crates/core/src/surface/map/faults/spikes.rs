@@ -28,8 +28,13 @@ const SAMPLED: usize = 1 << 16;
 ///
 /// The standard deviation counts as no smaller than its median over the map, from some 65000 neighbourhoods spread
 /// evenly, and no smaller than the least step between neighbouring heights, the digit of the instrument. Clusters of up
-/// to 3 x 3 points are seen, up to two points wide at the edges of the map. Neighbourhoods with fewer than nine valid
-/// points are left alone.
+/// to 3 x 3 points are seen, up to two points wide at the edges of the map; runs of four points along a line are not.
+/// Neighbourhoods with fewer than nine valid points are left alone.
+///
+/// False positives, measured: of 4.2 million points of normal noise none at a threshold of 6, and 7e-7 of them at 4; of as
+/// many points of a synthetic road, whose stones have flanks of four points and steps up to 70 robust standard
+/// deviations, none; with vertical walls 3e-5 of the points, where the neighbourhood alone would take 6e-4. Of single
+/// spikes on normal noise of unit variance, 71 % are found if they are 8 high, 95 % at 10.
 ///
 /// Cost is linear in the number of points.
 pub fn remove_spikes(map: &mut HeightMap, threshold: f64) -> Vec<usize> {
@@ -152,7 +157,7 @@ impl<const N: usize> Few<N> {
     fn median(&mut self) -> f64 {
         let values = &mut self.heights[..self.count];
         let middle = values.len() / 2;
-        let even = values.len() % 2 == 0;
+        let even = values.len().is_multiple_of(2);
         let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
         if !even {
             return upper;

@@ -23,7 +23,7 @@ pub enum GapError {
     /// A gap is larger than the limit.
     #[error(
         "map {map}: the gap at column {column}, row {row} is {size_mm:.4} mm wide, and only gaps up to \
-         {limit_mm:.4} mm are filled"
+         {limit_mm:.4} mm are filled; raise the limit or leave this map out"
     )]
     TooWide {
         /// Name of the map.
@@ -96,12 +96,12 @@ pub fn fill_gaps(map: &mut HeightMap, longest_gap: f64) -> Result<usize, GapErro
         }
         _ => {}
     }
-    let [column, row, size] = widest_gap(map);
+    let ([column, row], size) = widest_gap(map);
     if size > longest_gap * (1.0 + ROUNDING) {
         return Err(GapError::TooWide {
             map: map.name.clone(),
-            column: column as usize,
-            row: row as usize,
+            column,
+            row,
             size_mm: size * 1e3,
             limit_mm: longest_gap * 1e3,
         });
@@ -157,8 +157,8 @@ fn connected(map: &HeightMap, start: usize, places: &mut [u32]) -> Vec<usize> {
 }
 
 /// Column, row and twice the distance in metres to the nearest height, of the missing point where that is largest.
-fn widest_gap(map: &HeightMap) -> [f64; 3] {
-    let [columns, rows] = map.points;
+fn widest_gap(map: &HeightMap) -> ([usize; 2], f64) {
+    let [columns, _] = map.points;
     let [dx, _] = map.spacing;
     let vertical = distances_along_columns(map);
     let mut widest = (0, 0.0);
@@ -181,8 +181,7 @@ fn widest_gap(map: &HeightMap) -> [f64; 3] {
             widest = (point, nearest);
         }
     }
-    debug_assert!(rows > 0);
-    [(widest.0 % columns) as f64, (widest.0 / columns) as f64, 2.0 * widest.1.sqrt()]
+    ([widest.0 % columns, widest.0 / columns], 2.0 * widest.1.sqrt())
 }
 
 /// Distance in metres of every point to the nearest height in its column, 0 where it has one itself.
