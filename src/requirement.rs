@@ -4,6 +4,7 @@
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::scans::ScanProblem;
 use crate::surface::ConditioningError;
+use crate::surface::map::condition::MapConditioningError;
 
 /// A key or section of a recipe that cannot be used as it is.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +65,9 @@ pub enum InvalidRecipe {
     /// The conditioning of the scans.
     #[error("[ingest.conditioning]: {0}")]
     Conditioning(#[from] ConditioningError),
+    /// The conditioning of maps.
+    #[error("[ingest.maps]: {0}")]
+    MapConditioning(#[from] MapConditioningError),
 }
 
 impl HasKind for InvalidRecipe {
@@ -78,6 +82,7 @@ impl HasKind for InvalidRecipe {
             | Self::SweepOfSinusoid => ErrorKind::Input,
             Self::Text(_) => ErrorKind::Input,
             Self::Conditioning(source) => source.kind(),
+            Self::MapConditioning(source) => source.kind(),
         }
     }
 }
@@ -92,6 +97,10 @@ impl InvalidRecipe {
             (Self::Conditioning(ConditioningError::Parameter { key, demand, .. }), Some(typed)) => {
                 format!("ingest.conditioning.{key} = {typed}: {demand}")
             }
+            (
+                Self::MapConditioning(MapConditioningError::Parameter { key, require, .. }),
+                Some(typed),
+            ) => format!("ingest.maps.{key} = {typed}: {require}"),
             _ => self.to_string(),
         }
     }

@@ -4,8 +4,8 @@
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
 use crate::stages::{
-    approximate, bem, characterise, fem, hybrid, ingest, micro, multilevel, realise, sinusoid,
-    tables,
+    approximate, areal, bem, characterise, fem, hybrid, ingest, micro, multilevel, realise,
+    sinusoid, tables,
 };
 use crate::sweep::SweepFrictionRow;
 use schemars::schema_for;
@@ -24,6 +24,8 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<ingest::ScanReportRow>()?,
         table::<ingest::FaultRow>()?,
         table::<ingest::WindowRow>()?,
+        arrays(&ingest::maps_schema()),
+        table::<ingest::MapRow>()?,
         table::<characterise::ParametersRow>()?,
         table::<characterise::AverageRow>()?,
         table::<characterise::CorrelationRow>()?,
@@ -41,11 +43,16 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<approximate::FittedRow>()?,
         table::<realise::SurfaceRow>()?,
         table::<realise::ProfileRow>()?,
+        table::<realise::ArealRow>()?,
+        arrays(&realise::areal_schema()),
         table::<bem::SolveRow>()?,
         table::<bem::CurveRow>()?,
         table::<bem::RealisationsRow>()?,
         table::<bem::ScanErrorRow>()?,
         arrays(&bem::fields_schema()),
+        table::<areal::ArealSolveRow>()?,
+        table::<areal::ArealCurveRow>()?,
+        arrays(&areal::areal_fields_schema()),
         table::<micro::SampleRow>()?,
         table::<micro::LawRow>()?,
         table::<hybrid::HybridRow>()?,

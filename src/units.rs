@@ -29,6 +29,10 @@ pub trait Units {
     fn m3_to_mm3(self) -> f64;
     /// A spectral density in mm³, in m³.
     fn mm3_to_m3(self) -> f64;
+    /// A spectral density over the plane in m⁴, in mm⁴.
+    fn m4_to_mm4(self) -> f64;
+    /// A spectral density over the plane in mm⁴, in m⁴.
+    fn mm4_to_m4(self) -> f64;
     /// A wavenumber in rad/m, in rad/mm.
     fn per_m_to_per_mm(self) -> f64;
     /// A wavenumber in rad/mm, in rad/m.
@@ -82,6 +86,14 @@ impl Units for f64 {
         self / 1e9
     }
 
+    fn m4_to_mm4(self) -> f64 {
+        self * 1e12
+    }
+
+    fn mm4_to_m4(self) -> f64 {
+        self / 1e12
+    }
+
     fn per_m_to_per_mm(self) -> f64 {
         self / 1e3
     }
@@ -101,12 +113,13 @@ mod tests {
 
     #[test]
     fn there_and_back_is_the_same_but_for_the_last_bit() {
-        let back: [fn(f64) -> f64; 6] = [
+        let back: [fn(f64) -> f64; 7] = [
             |x| x.m_to_mm().mm_to_m(),
             |x| x.m_to_um().um_to_m(),
             |x| x.pa_to_mpa().mpa_to_pa(),
             |x| x.m2_to_mm2().mm2_to_m2(),
             |x| x.m3_to_mm3().mm3_to_m3(),
+            |x| x.m4_to_mm4().mm4_to_m4(),
             |x| x.per_m_to_per_mm().per_mm_to_per_m(),
         ];
         for k in 1..1000 {

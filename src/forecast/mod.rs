@@ -31,11 +31,12 @@ use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
 use crate::stages;
+use crate::stages::areal;
 use crate::stages::bem::{self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, Worth};
-use crate::stages::ingest::read_windows;
+use crate::stages::ingest::{read_maps, read_windows};
 use crate::stages::micro::Parting;
 use crate::stages::realise::SurfaceKind;
-use crate::stages::realise::{Surface, read_surfaces};
+use crate::stages::realise::{ArealSurface, Surface, read_areal_surfaces, read_surfaces};
 use crate::stages::{Chain, Job};
 use crate::stages::{Stage, StageError, Watch};
 use crate::units::Units;
@@ -157,6 +158,10 @@ pub fn forecast(
     let busy = (tried / threads as f64).min(1.0);
     let half_space = bem_seconds * (total / tried * busy).max(1.0);
     stages.push(StageForecast { stage: stages::bem::STAGE, seconds: Some(half_space) });
+    if chain.has_areal_surfaces() {
+        let seconds = areal_seconds(&chain, &RunView::of(folder.path()), threads)?;
+        stages.push(StageForecast { stage: stages::areal::STAGE, seconds: Some(seconds) });
+    }
     let mut microscales = Vec::new();
     if let Some(parameters) = chain.micro {
         microscales = micro::microscales(parameters, &trial, &curves, interrupted)?;
@@ -206,7 +211,7 @@ fn run_trial(
     let trial = shortened(recipe);
     let (mut stages, mut bem_seconds) = (Vec::new(), 0.0);
     for (stage, _) in pipeline::status(&trial, folder)? {
-        if stage == stages::tables::STAGE {
+        if [stages::tables::STAGE, stages::areal::STAGE].contains(&stage) {
             continue;
         }
         if stage == stages::bem::STAGE {
@@ -249,6 +254,7 @@ fn shortened(recipe: &Recipe) -> Recipe {
         let count = if averaged { realise.drawn().min(FIRST_REALISATIONS as u32) } else { 1 };
         realise.realisations = Some(count);
         realise.most_windows = Some(1);
+        realise.areal_realisations = realise.areal_realisations.map(|_| 1);
         realise.most_realisations = averaged.then_some(count);
     }
     if let Some(bem) = &mut trial.bem {
@@ -256,6 +262,25 @@ fn shortened(recipe: &Recipe) -> Recipe {
         bem.estimate_scan_error = false;
     }
     trial
+}
+
+/// Expected wall time in s of the areal surfaces, from the grids of those of the first window.
+fn areal_seconds(chain: &Chain, view: &RunView, threads: usize) -> Result<f64, ForecastError> {
+    let sweep = areal::Sweep { areal: chain.areal.clone(), wanted: chain.bem.wanted() };
+    let surfaces = read_areal_surfaces(view)?;
+    let maps = if chain.has_maps() { read_maps(view)?.len().min(most_windows(chain)) } else { 0 };
+    let curves = (chain.bem.speeds_mm_s.len() * chain.areal.angles_deg.len()) as f64;
+    let of_kind = |first: &ArealSurface| {
+        let measured = first.kind.method.is_measured();
+        let count = if measured { maps } else { chain.realise.areal_drawn() as usize };
+        count as f64 * curves * sweep.seconds(chain.areal.grid(first))
+    };
+    let firsts = surfaces.iter().filter(|surface| surface.realisation == 1);
+    Ok(firsts.map(of_kind).sum::<f64>() / threads as f64)
+}
+
+fn most_windows(chain: &Chain) -> usize {
+    chain.realise.most_windows.map_or(usize::MAX, |most| most as usize)
 }
 
 /// What the trial gave.

@@ -3,6 +3,7 @@
 use crate::requirement::InvalidRecipe;
 use crate::scans::ScanProblem;
 use crate::surface::ConditioningError;
+use crate::surface::map::condition::MapConditioningError;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -35,6 +36,10 @@ fn key(violation: &InvalidRecipe) -> Option<String> {
             return Some(format!("ingest.conditioning.{key}"));
         }
         InvalidRecipe::Conditioning(_) => "ingest.conditioning",
+        InvalidRecipe::MapConditioning(MapConditioningError::Parameter { key, .. }) => {
+            return Some(format!("ingest.maps.{key}"));
+        }
+        InvalidRecipe::MapConditioning(_) => "ingest.maps",
         InvalidRecipe::SeveralCases { .. } | InvalidRecipe::SweepOfSinusoid => "sweep",
         InvalidRecipe::Missing { key, .. } => *key,
         InvalidRecipe::MissingSection { .. } => return None,

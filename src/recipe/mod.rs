@@ -19,6 +19,7 @@ use crate::requirement::{InvalidRecipe, require};
 use crate::stages::{
     Chain, Job,
     approximate::Approximate,
+    areal::Areal,
     bem::Bem,
     characterise::Characterise,
     fem::Fem,
@@ -65,6 +66,9 @@ pub struct Recipe {
     /// Sliding contact of the viscoelastic half-space.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bem: Option<Bem>,
+    /// Sliding contact of areal surfaces, where maps are kept or isotropic surfaces are made.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub areal: Areal,
     /// The steepest waves at finite deformation; with it, friction is corrected by them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub micro: Option<Micro>,
@@ -232,6 +236,7 @@ impl Recipe {
             ("approximate", self.approximate.is_some()),
             ("realise", self.realise.is_some()),
             ("bem", self.bem.is_some()),
+            ("areal", self.areal != Areal::default()),
             ("micro", self.micro.is_some()),
             ("hybrid", self.hybrid.is_some()),
             ("fem", self.fem.is_some()),
@@ -256,6 +261,7 @@ impl Recipe {
             approximate: self.approximate.as_ref().ok_or(missing("approximate"))?,
             realise: self.realise.as_ref().ok_or(missing("realise"))?,
             bem: self.bem.as_ref().ok_or(missing("bem"))?,
+            areal: &self.areal,
             micro: self.micro.as_ref(),
             hybrid: self.hybrid.unwrap_or_default(),
             fem: self.fem.as_ref(),
@@ -277,13 +283,44 @@ impl Recipe {
     }
 }
 
+fn is_default(areal: &Areal) -> bool {
+    *areal == Areal::default()
+}
+
 impl Chain<'_> {
+    /// Checks that areal surfaces and what is said about them go together.
+    fn check_areal(&self) -> Result<(), InvalidRecipe> {
+        let has_maps = self.has_maps() && self.realise.names_windows();
+        let wanted =
+            "left out unless [ingest.maps] keeps maps and realise.methods has surfaces of windows";
+        require(self.realise.profiles || has_maps, "realise.profiles", false, wanted)?;
+        let count = self.realise.areal_realisations.unwrap_or(0);
+        let wanted =
+            "left out without areal surfaces (a section [ingest.maps], or the method isotropic)";
+        let areal = self.has_areal_surfaces();
+        require(areal || count == 0, "realise.areal_realisations", count, wanted)?;
+        require(areal || is_default(self.areal), "areal", "a section", wanted)?;
+        let finite = [
+            ("micro", self.micro.is_some()),
+            ("fem", self.fem.is_some()),
+            ("multilevel", self.multilevel.is_some()),
+        ];
+        let has_lines = self.realise.has_windows() || !self.realise.waves.is_empty();
+        let wanted = "left out where no profile is made: finite deformation is for profiles";
+        for (key, given) in finite {
+            require(has_lines || !given, key, "a section", wanted)?;
+        }
+        Ok(())
+    }
+
     fn check(&self) -> Result<(), InvalidRecipe> {
         self.ingest.map_or(Ok(()), Ingest::check)?;
         self.characterise.check()?;
         self.approximate.check()?;
         self.realise.check()?;
         self.bem.check()?;
+        self.areal.check(self.bem)?;
+        self.check_areal()?;
         self.micro.map_or(Ok(()), Micro::check)?;
         self.fem.map_or(Ok(()), Fem::check)?;
         self.multilevel.map_or(Ok(()), Multilevel::check)?;
@@ -320,7 +357,7 @@ impl Chain<'_> {
         }
         let fitted = self.approximate.numbers();
         require(
-            scans || !self.realise.has_windows(),
+            scans || !(self.realise.names_windows() || self.realise.is_isotropic()),
             "realise.methods",
             self.realise.methods.iter().map(|method| method.name()).collect::<Vec<_>>(),
             "sines alone where the recipe states the waves and has no scans",

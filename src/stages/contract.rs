@@ -2,6 +2,7 @@
 //! it, so that a stage is added by its file and its place in [`Stage::ALL`].
 
 use super::approximate::Approximate;
+use super::areal::Areal;
 use super::bem::Bem;
 use super::characterise::Characterise;
 use super::fem::Fem;
@@ -55,6 +56,8 @@ pub struct Chain<'a> {
     pub realise: &'a Realise,
     /// Section `[bem]`.
     pub bem: &'a Bem,
+    /// Section `[areal]`.
+    pub areal: &'a Areal,
     /// Section `[micro]`, if friction is to be corrected.
     pub micro: Option<&'a Micro>,
     /// Section `[hybrid]`.

@@ -1,5 +1,6 @@
 //! Friction of one surface at one speed and contact area, whatever model it is of.
 
+use super::areal::ArealCurveRow;
 use super::bem::{CurveRow, Given};
 use super::fem::FemCurveRow;
 use super::hybrid::HybridRow;
@@ -87,6 +88,23 @@ impl From<&CurveRow> for FrictionAt {
             interpolation_error: row.interpolation_error,
             discretisation_error: row.discretisation_error,
             left_out_error: row.left_out_error,
+            microscale_error: Some(0.0),
+        }
+    }
+}
+
+impl From<&ArealCurveRow> for FrictionAt {
+    fn from(row: &ArealCurveRow) -> Self {
+        let ArealCurveRow { kind, realisation, speed_mm_s, .. } = *row;
+        Self {
+            curve: CurveId { kind, realisation, speed_mm_s },
+            given: row.given,
+            contact_area_fraction: row.contact_area_fraction,
+            pressure_mpa: row.pressure_mpa,
+            friction_coefficient: row.friction_coefficient,
+            interpolation_error: row.interpolation_error,
+            discretisation_error: row.discretisation_error,
+            left_out_error: 0.0,
             microscale_error: Some(0.0),
         }
     }

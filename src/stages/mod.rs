@@ -5,8 +5,9 @@
 //! | [`ingest`] | scan files | windows of equal spacing (HDF5), a report |
 //! | [`characterise`] | windows | roughness parameters, correlation, spectrum, self-affine fit |
 //! | [`approximate`] | correlation | amplitudes of superposed sines |
-//! | [`realise`] | windows, amplitudes | surfaces that stand for the road, as waves |
+//! | [`realise`] | windows, maps, amplitudes | surfaces that stand for the road, as waves or heights |
 //! | [`bem`] | waves, rubber | solved contacts, friction over area |
+//! | [`areal`] | areal surfaces, rubber | solved contacts of areal surfaces, friction over area |
 //! | [`micro`] | waves, friction over area, rubber | the steepest waves under both models, their local law |
 //! | [`hybrid`] | waves, friction over area, microscale | friction over area, corrected |
 //! | [`fem`] | waves, rubber | friction over area with all waves at finite deformation |
@@ -14,6 +15,7 @@
 //! | [`tables`] | friction over area | averages with confidence intervals |
 
 pub mod approximate;
+pub mod areal;
 pub mod bem;
 pub mod characterise;
 pub mod contract;
@@ -42,12 +44,13 @@ pub struct Stage(pub &'static Contract);
 
 impl Stage {
     /// All stages in the order of the data, the study of one sine last.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         ingest::STAGE,
         characterise::STAGE,
         approximate::STAGE,
         realise::STAGE,
         bem::STAGE,
+        areal::STAGE,
         micro::STAGE,
         hybrid::STAGE,
         fem::STAGE,
@@ -209,6 +212,50 @@ pub enum StageError {
     /// A window that cannot be made periodic.
     #[error("{0} (realise.longest_gap_mm, realise.shortest_wavelength_mm)")]
     Periodic(#[from] crate::surface::PeriodicError),
+    /// A map that cannot be conditioned.
+    #[error("{0} (ingest.maps)")]
+    MapConditioning(#[from] crate::surface::map::condition::MapConditioningError),
+    /// A map with a gap that is not filled.
+    #[error("{0} (realise.longest_gap_mm)")]
+    Gap(#[from] crate::surface::map::gaps::GapError),
+    /// A map that cannot be made periodic.
+    #[error("{0} (realise.shortest_wavelength_mm, ingest.maps.window_length_mm)")]
+    PeriodicMap(#[from] crate::surface::PeriodicMapError),
+    /// No file of a recipe that keeps maps is one.
+    #[error(
+        "none of the scans is a height map, and [ingest.maps] keeps maps: leave the section out, or give maps"
+    )]
+    NoMaps,
+    /// A dataset of areal surfaces that is not as it was written.
+    #[error("{name} in areal.h5 of realise is not an areal surface: run with --force realise")]
+    ArealSurface {
+        /// Name of the dataset.
+        name: String,
+    },
+    /// Line scans without a spectrum that an isotropic surface could have.
+    #[error(
+        "the line scans have no isotropic spectrum, so that realise.methods cannot name isotropic: their averaged spectrum has fewer than two bins with power"
+    )]
+    NoIsotropicSpectrum,
+    /// Areal grids that do not fit into the memory that may be taken.
+    #[error(
+        "{kind}: {at_once} contacts at a time on {} by {} points need about {needed_gb:.1} GB, and areal.memory_gb is {limit_gb}: \
+         lower areal.points_per_shortest_wavelength, raise realise.shortest_wavelength_mm, cut smaller windows \
+         (ingest.maps.window_length_mm), take fewer threads (--threads), or allow more",
+        points[0], points[1]
+    )]
+    ArealMemory {
+        /// Which surfaces.
+        kind: realise::SurfaceKind,
+        /// Points along x and y.
+        points: [usize; 2],
+        /// Contacts that are solved at a time.
+        at_once: usize,
+        /// Memory that they need in GB.
+        needed_gb: f64,
+        /// Memory that they may take in GB.
+        limit_gb: f64,
+    },
     /// A rubber file.
     #[error(transparent)]
     Rubber(#[from] crate::rubber::RubberFileError),
@@ -338,6 +385,9 @@ impl HasKind for StageError {
             Self::Ladder(source) => source.kind(),
             Self::SineFit { source, .. } => source.kind(),
             Self::Periodic(source) => source.kind(),
+            Self::MapConditioning(source) => source.kind(),
+            Self::Gap(source) => source.kind(),
+            Self::PeriodicMap(source) => source.kind(),
             Self::Rubber(source) => source.kind(),
             Self::Contact { source, .. } => source.kind(),
             Self::Microscale { source, .. }
@@ -345,6 +395,10 @@ impl HasKind for StageError {
             | Self::Solve { source, .. } => source.kind(),
             Self::MapLines { .. }
             | Self::NoTextFormat { .. }
+            | Self::NoMaps
+            | Self::ArealSurface { .. }
+            | Self::NoIsotropicSpectrum
+            | Self::ArealMemory { .. }
             | Self::NoScans { .. }
             | Self::ScanIo { .. }
             | Self::ScanChanged { .. }

@@ -8,8 +8,10 @@
 use super::task::{Solvers, Task};
 use super::{Prepared, SweepError};
 use crate::artifact::SolveStore;
+use crate::contact::areal::memory_bytes;
 use crate::fem::cost::{MeshCost, solves_of_curve};
 use crate::recipe::Case;
+use crate::stages::areal;
 use crate::stages::bem::{self, SolveRow};
 use crate::stages::fem::{self, Fem};
 use crate::stages::kept::SolveTask;
@@ -123,6 +125,7 @@ impl<'a> Costs<'a> {
                     |trial| trial.scaled(task.speed_mm_s, grid_points),
                 )
             }
+            Task::Areal(task) => areal(task, &self.solvers.areal),
             Task::Micro(task) => {
                 let local = |pressed: &crate::stages::micro::PressedSurface| {
                     PEAK * pressed.most_pressure_mpa / pressed.contact_area_fraction
@@ -140,6 +143,15 @@ impl<'a> Costs<'a> {
         let solves = solves_of_curve(self.solvers.bem.wanted().range(), parameters.pressure_ratio);
         let mesh = fem::cost(parameters, &task.surface);
         finite(mesh, mesh.seconds_of_solves(solves))
+    }
+}
+
+/// A curve of an areal surface: points times the solves of a curve, and what a solve holds.
+fn areal(task: &areal::Task, sweep: &areal::Sweep) -> Cost {
+    let points = sweep.areal.grid(&task.surface);
+    Cost {
+        seconds: sweep.seconds(points),
+        megabytes: (memory_bytes(points[0], points[1]) as f64).bytes_to_megabytes(),
     }
 }
 

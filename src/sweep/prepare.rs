@@ -10,8 +10,8 @@ use crate::rubber::{Rubber, RubberData};
 use crate::stages;
 use crate::stages::bem::{self, CURVES};
 use crate::stages::ingest::{ScanFile, find_scans};
-use crate::stages::realise::{Surface, read_surfaces};
-use crate::stages::{Stage, StageError, Watch, fem, micro, multilevel};
+use crate::stages::realise::{AREAL, Surface, read_areal_surfaces, read_surfaces};
+use crate::stages::{Stage, StageError, Watch, areal, fem, micro, multilevel};
 use rayon::prelude::*;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -166,11 +166,20 @@ impl Prepared {
         let wanted = |task: Task| Wanted::new(number, task, solvers, rubber);
         let view = RunView::of(self.layout.surfaces(case));
         let scans = bem::Scans::read(&solvers.bem, surfaces, &view)?;
-        let curves = bem::missing(&solvers.bem, rubber, surfaces, &scans, store, silent)?;
+        let mut curves: Vec<Task> =
+            bem::missing(&solvers.bem, rubber, surfaces, &scans, store, silent)?
+                .into_iter()
+                .map(Task::Bem)
+                .collect();
+        if view.has(AREAL)? {
+            let maps = read_areal_surfaces(&view)?;
+            let missing = areal::missing(&solvers.areal, &solvers.bem, rubber, &maps, store)?;
+            curves.extend(missing.into_iter().map(Task::Areal));
+        }
         let (micro, fem) = (case.recipe.micro.is_some(), case.recipe.fem.is_some());
         let multilevel = case.recipe.multilevel.is_some();
         if !curves.is_empty() || !(micro || fem || multilevel) {
-            return Ok(curves.into_iter().map(Task::Bem).map(wanted).collect());
+            return Ok(curves.into_iter().map(wanted).collect());
         }
         let folder = self.make_case(case)?;
         self.run_stage(case, folder.clone(), stages::bem::STAGE, watch)?;

@@ -4,6 +4,7 @@ use crate::artifact::{Digest, SolveStore};
 use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
 use crate::rubber::Rubber;
+use crate::stages::areal;
 use crate::stages::bem::{self, Bem};
 use crate::stages::fem;
 use crate::stages::kept::SolveTask;
@@ -13,12 +14,14 @@ use crate::stages::{Chain, Job};
 use crate::stages::{StageError, Watch};
 use serde::{Deserialize, Serialize};
 
-/// A curve of the half-space, a microscale or a curve at finite deformation.
+/// A curve of the half-space, on profiles or areal surfaces, a microscale or a curve at finite deformation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "stage", content = "task", rename_all = "lowercase")]
 pub enum Task {
     /// Of the stage `bem`.
     Bem(bem::Task),
+    /// Of the stage `areal`.
+    Areal(areal::Task),
     /// Of the stage `micro`.
     Micro(micro::Task),
     /// Of the stage `fem`.
@@ -32,6 +35,8 @@ pub enum Task {
 pub struct Solvers {
     /// Section `[bem]`.
     pub bem: Bem,
+    /// Section `[areal]` with the areas of the half-space.
+    pub areal: areal::Sweep,
     /// Section `[micro]`.
     pub micro: Micro,
     /// Section `[fem]` with the areas of the half-space.
@@ -49,11 +54,12 @@ impl Solvers {
     /// [`InvalidRecipe`] for the study of one sine.
     pub fn of(case: &Recipe) -> Result<Self, InvalidRecipe> {
         match case.job()? {
-            Job::Chain(Chain { bem, micro, fem, multilevel, .. }) => {
+            Job::Chain(Chain { bem, areal, micro, fem, multilevel, .. }) => {
                 let multilevel = multilevel.copied().unwrap_or_default();
                 let wanted = bem.wanted();
                 Ok(Self {
                     bem: bem.clone(),
+                    areal: areal::Sweep { areal: areal.clone(), wanted: wanted.clone() },
                     micro: micro.cloned().unwrap_or_default(),
                     fem: fem::Sweep { fem: fem.cloned().unwrap_or_default(), wanted },
                     multilevel,
@@ -70,6 +76,7 @@ impl Task {
     pub fn problem(&self, solvers: &Solvers, rubber: &Rubber) -> Digest {
         match self {
             Self::Bem(task) => task.problem(&solvers.bem, rubber),
+            Self::Areal(task) => task.problem(&solvers.areal, rubber),
             Self::Micro(task) => task.problem(&solvers.micro, rubber),
             Self::Fem(task) => task.problem(&solvers.fem, rubber),
             Self::Multilevel(task) => task.problem(&solvers.pairs, rubber),
@@ -80,6 +87,7 @@ impl Task {
     pub fn key(&self, solvers: &Solvers, rubber: &Rubber) -> Digest {
         match self {
             Self::Bem(task) => task.key(&solvers.bem, rubber),
+            Self::Areal(task) => task.key(&solvers.areal, rubber),
             Self::Micro(task) => task.key(&solvers.micro, rubber),
             Self::Fem(task) => task.key(&solvers.fem, rubber),
             Self::Multilevel(task) => task.key(&solvers.pairs, rubber),
@@ -99,6 +107,7 @@ impl Task {
     ) -> Result<(), StageError> {
         match self {
             Self::Bem(task) => task.solve(&solvers.bem, rubber, store, watch).map(drop),
+            Self::Areal(task) => task.solve(&solvers.areal, rubber, store, watch).map(drop),
             Self::Micro(task) => task.solve(&solvers.micro, rubber, store, watch).map(drop),
             Self::Fem(task) => task.solve(&solvers.fem, rubber, store, watch).map(drop),
             Self::Multilevel(task) => task.solve(&solvers.pairs, rubber, store, watch).map(drop),
@@ -111,6 +120,7 @@ impl Task {
             Self::Bem(task) => task.name(),
             Self::Fem(task) => task.name(),
             Self::Multilevel(task) => task.surface.name_at("multilevel", task.speed_mm_s),
+            Self::Areal(task) => task.name(),
             Self::Micro(task) => task.name(),
         }
     }

@@ -23,7 +23,7 @@ use asperity::report::{
     markdown, values_table, workbook,
 };
 use asperity::stages::Stage;
-use asperity::stages::ingest::{FAULTS, REPORT, WINDOWS, cleaning_markdown};
+use asperity::stages::ingest::{FAULTS, MAP_WINDOWS, REPORT, WINDOWS, cleaning_markdown};
 use asperity::stages::realise::Method;
 use asperity::stages::tables::{COMPARISON, CORRECTIONS, FRICTION, FrictionRow, Model, NOTE_KEY};
 use asperity::sweep::STAGE;
@@ -221,7 +221,8 @@ impl Export {
         let scans = view.rows(REPORT)?;
         let faults = view.rows(FAULTS)?;
         let windows = view.rows(WINDOWS)?;
-        self.text(&cleaning_markdown(&scans, &faults, &windows, &BTreeMap::new()))
+        let maps = if view.has(MAP_WINDOWS)? { view.rows(MAP_WINDOWS)? } else { Vec::new() };
+        self.text(&cleaning_markdown(&scans, &faults, &windows, &maps, &BTreeMap::new()))
     }
 
     /// A table of the run as it is.

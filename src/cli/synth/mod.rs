@@ -1,11 +1,13 @@
 //! `asperity synth`: synthetic scans of asphalt.
 
+mod map;
+
 use asperity::units::Units;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 
 use super::interrupt::Interrupt;
 use super::output::{already_exists, note, print, significant, write_file};
@@ -35,15 +37,25 @@ Examples:
 /// semicolons; a missing point is BAD. The same options give the same files.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct Synth {
+    #[command(subcommand)]
+    other: Option<Other>,
     /// Folder for the scans; made if it is not there.
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    #[arg(long, value_name = "DIR", required = true)]
+    out: Option<PathBuf>,
     /// Overwrite scans that are there already.
     #[arg(long)]
     force: bool,
     #[command(flatten)]
     specimen: SpecimenOptions,
+}
+
+/// Other scans than of lines.
+#[derive(Debug, Subcommand)]
+enum Other {
+    /// Write a synthetic height map instead.
+    Map(Box<map::SynthMap>),
 }
 
 /// Surfaces with defaults of their own.
@@ -175,7 +187,7 @@ impl SpecimenOptions {
 }
 
 /// The options of lengths, which are checked in m, with their units in m.
-const LENGTHS: [(&str, &str, &str, f64); 10] = [
+const LENGTHS: [(&str, &str, &str, f64); 14] = [
     ("length_m", "--length-mm", "mm", 1e-3),
     ("spacing_m", "--spacing-um", "um", 1e-6),
     ("outer_regime.crossover_lag_m", "--crossover-lag-mm", "mm", 1e-3),
@@ -186,6 +198,10 @@ const LENGTHS: [(&str, &str, &str, f64); 10] = [
     ("spot_diameter_m", "--spot-diameter-um", "um", 1e-6),
     ("noise_m", "--noise-um", "um", 1e-6),
     ("missing_run_length_m", "--missing-run-length-um", "um", 1e-6),
+    ("correlation_length_m", "--correlation-length-mm", "mm", 1e-3),
+    ("rms_height_m", "--rms-height-mm", "mm", 1e-3),
+    ("digit_m", "--digit-um", "um", 1e-6),
+    ("missing_diameter_m", "--missing-diameter-um", "um", 1e-6),
 ];
 
 /// The error under the name of the option, with the value in its unit.
@@ -211,6 +227,12 @@ fn impossible(error: SynthesisError) -> CliError {
 
 impl Synth {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        if let Some(Other::Map(map)) = &self.other {
+            return map.run(quiet);
+        }
+        let Some(out) = &self.out else {
+            return Err(CliError::input("give a folder for the scans as --out"));
+        };
         let parameters = self.specimen.parameters()?;
         parameters.validate().map_err(impossible)?;
         let total = parameters.scans as f64 * (parameters.length / parameters.spacing);
@@ -221,12 +243,12 @@ impl Synth {
             )));
         }
         let scans = parameters.generate().map_err(impossible)?;
-        let file = |name: &str| self.out.join(format!("{name}.txt"));
+        let file = |name: &str| out.join(format!("{name}.txt"));
         let present = scans.iter().map(|scan| file(&scan.name)).find(|path| path.exists());
         if let Some(path) = present.filter(|_| !self.force) {
             return Err(already_exists(&path));
         }
-        fs::create_dir_all(&self.out).map_err(|error| CliError::no_folder(&self.out, &error))?;
+        fs::create_dir_all(out).map_err(|error| CliError::no_folder(out, &error))?;
         let interrupt = Interrupt::install()?;
         for scan in &scans {
             interrupt.check()?;
@@ -234,14 +256,14 @@ impl Synth {
         }
         let names: Vec<OsString> =
             scans.iter().map(|scan| format!("{}.txt", scan.name).into()).collect();
-        let others = other_scans(&self.out, &names).map_err(|error| {
-            let folder = self.out.display();
+        let others = other_scans(out, &names).map_err(|error| {
+            let folder = out.display();
             CliError::failure(format!("cannot look for other scans in {folder}: {error}"))
         })?;
         if others > 0 {
             note(
                 quiet,
-                format_args!("warning: {} holds {others} other scans as well", self.out.display()),
+                format_args!("warning: {} holds {others} other scans as well", out.display()),
             );
         }
         let points = scans.first().map_or(0, |scan| scan.heights.len());

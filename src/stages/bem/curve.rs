@@ -305,7 +305,7 @@ pub(super) fn problem(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Va
 }
 
 /// A value at a pressure that was solved itself.
-fn solved(point: CurvePoint) -> CurveValue {
+pub(crate) fn solved(point: CurvePoint) -> CurveValue {
     CurveValue {
         contact_area_fraction: point.contact_area_fraction,
         mean_pressure: point.mean_pressure,

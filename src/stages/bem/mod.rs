@@ -35,6 +35,7 @@ use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
 use crate::units::Units;
 pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
+pub(crate) use curve::solved;
 pub(crate) use ensemble::FIRST_REALISATIONS;
 use ensemble::{CurveResult, Ensemble};
 pub use rows::{

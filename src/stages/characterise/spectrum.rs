@@ -303,9 +303,9 @@ pub(super) fn isotropic_rows(spectrum: &[SpectrumRow], hurst: &[HurstRow]) -> Ve
     let Ok(inverse) = abel_inverse(&wavenumbers, &densities) else { return Vec::new() };
     let row = |((&q, &line), density): ((&f64, &f64), f64)| IsotropicRow {
         wavenumber_rad_mm: q.per_m_to_per_mm(),
-        abel_density_mm4: finite(density * 1e12),
+        abel_density_mm4: finite(density.m4_to_mm4()),
         self_affine_density_mm4: exponent
-            .and_then(|exponent| finite(self_affine_isotropic(q, line, exponent) * 1e12)),
+            .and_then(|exponent| finite(self_affine_isotropic(q, line, exponent).m4_to_mm4())),
     };
     wavenumbers.iter().zip(&densities).zip(inverse).map(row).collect()
 }

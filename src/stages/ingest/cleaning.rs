@@ -1,6 +1,6 @@
 //! What was cleaned from the scans, for the people who decide on it.
 
-use super::{FaultRow, ScanReportRow, WindowRow};
+use super::{FaultRow, MapRow, ScanReportRow, WindowRow};
 use crate::text::markdown_text;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -16,6 +16,7 @@ pub fn cleaning_markdown(
     scans: &[ScanReportRow],
     faults: &[FaultRow],
     windows: &[WindowRow],
+    maps: &[MapRow],
     pictures: &BTreeMap<String, String>,
 ) -> String {
     let mut text = String::from("# What was cleaned\n");
@@ -25,6 +26,11 @@ pub fn cleaning_markdown(
     }
     let mut clean = Vec::new();
     let mut gappy = String::new();
+    let mut of_maps = String::new();
+    for of_map in maps.chunk_by(|a, b| a.map == b.map) {
+        let found = by_scan.remove(of_map[0].map.as_str()).unwrap_or_default();
+        map_section(&mut of_maps, of_map, &found);
+    }
     for scan in scans {
         let found = by_scan.remove(scan.scan.as_str()).unwrap_or_default();
         // Only what can be taken away has an effect.
@@ -69,7 +75,64 @@ pub fn cleaning_markdown(
     for (window, reason) in rejected {
         let _ = writeln!(text, "- {}: {reason}", markdown_text(window));
     }
-    text
+    text + &of_maps
+}
+
+/// What was found in a map, and which of its windows are kept.
+fn map_section(text: &mut String, windows: &[MapRow], faults: &[&FaultRow]) {
+    let Some(map) = windows.first() else { return };
+    let points = map.points_x * map.points_y;
+    let _ = write!(
+        text,
+        "\n## Map {}\n\n{} by {} points, {:.2} by {:.2} µm apart; {} without a height in the file ({:.1} %).\n",
+        markdown_text(&map.map),
+        map.points_x,
+        map.points_y,
+        map.spacing_x_um,
+        map.spacing_y_um,
+        map.points_missing,
+        100.0 * map.points_missing as f64 / points.max(1) as f64
+    );
+    if !faults.is_empty() {
+        text.push_str(FAULT_HEAD);
+        faults.iter().for_each(|fault| fault_row(text, fault));
+    }
+    let rejected = || windows.iter().filter_map(|w| Some((&w.window, w.rejected.as_ref()?)));
+    let _ = write!(
+        text,
+        "\n{} of {} windows kept.\n",
+        windows.len() - rejected().count(),
+        windows.len()
+    );
+    for (window, reason) in rejected() {
+        let _ = writeln!(text, "- {}: {reason}", markdown_text(window));
+    }
+}
+
+/// Head of a table of faults.
+const FAULT_HEAD: &str = "\n| fault | found | share | decision | rms slope with, without | shortest waves without, \
+     over with | criterion |\n|---|---:|---:|---|---:|---:|---|\n";
+
+fn fault_row(text: &mut String, fault: &FaultRow) {
+    let slopes = match (fault.rms_slope_before, fault.rms_slope_after) {
+        (Some(before), Some(after)) => format!("{before:.3}, {after:.3}"),
+        _ => "–".into(),
+    };
+    let ratio =
+        fault.high_frequency_ratio.map_or_else(|| "–".into(), |ratio| format!("{ratio:.3}"));
+    let measure = match (fault.measure, &fault.measure_name) {
+        (Some(measure), Some(name)) => format!("; {name} {measure:.4}"),
+        _ => String::new(),
+    };
+    let _ = writeln!(
+        text,
+        "| {} | {} | {:.2} % | {}{measure} | {slopes} | {ratio} | {} |",
+        fault.fault,
+        fault.count,
+        100.0 * fault.share,
+        fault.decision,
+        fault.criterion.replace('|', "\\|")
+    );
 }
 
 fn gappy_row(
@@ -108,31 +171,8 @@ fn section(text: &mut String, scan: &ScanReportRow, faults: &[&FaultRow]) {
         scan.raw_spacing_um,
         scan.points_missing
     );
-    text.push_str(
-        "\n| fault | found | share | decision | rms slope with, without | shortest waves without, \
-         over with | criterion |\n|---|---:|---:|---|---:|---:|---|\n",
-    );
-    for fault in faults {
-        let slopes = match (fault.rms_slope_before, fault.rms_slope_after) {
-            (Some(before), Some(after)) => format!("{before:.3}, {after:.3}"),
-            _ => "–".into(),
-        };
-        let ratio =
-            fault.high_frequency_ratio.map_or_else(|| "–".into(), |ratio| format!("{ratio:.3}"));
-        let measure = match (fault.measure, &fault.measure_name) {
-            (Some(measure), Some(name)) => format!("; {name} {measure:.4}"),
-            _ => String::new(),
-        };
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.2} % | {}{measure} | {slopes} | {ratio} | {} |",
-            fault.fault,
-            fault.count,
-            100.0 * fault.share,
-            fault.decision,
-            fault.criterion.replace('|', "\\|")
-        );
-    }
+    text.push_str(FAULT_HEAD);
+    faults.iter().for_each(|fault| fault_row(text, fault));
 }
 
 #[cfg(test)]
@@ -191,7 +231,7 @@ mod tests {
         };
         let windows = [window("a-00", None), window("a-01", Some("30 % are missing"))];
         let pictures = BTreeMap::from([("a".to_owned(), "faults_01.svg".to_owned())]);
-        let text = cleaning_markdown(&scans, &faults, &windows, &pictures);
+        let text = cleaning_markdown(&scans, &faults, &windows, &[], &pictures);
         assert!(text.contains("\n![a](faults_01.svg)\n"), "{text}");
         assert!(text.contains("## a\n\n1000 points, 37.50 µm apart; 49 without"), "{text}");
         assert!(text.contains("(4.9 %)"), "{text}");

@@ -1,7 +1,7 @@
 //! The table of the faults of the scans.
 
 use crate::artifact::{Row, Table};
-use crate::surface::ConditioningReport;
+use crate::surface::faults::FaultReport;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -46,9 +46,10 @@ impl Row for FaultRow {
     const VERSION: u32 = 1;
 }
 
-pub(super) fn fault_rows(report: &ConditioningReport) -> Vec<FaultRow> {
-    let row = |fault: &crate::surface::faults::FaultReport| FaultRow {
-        scan: report.scan.clone(),
+/// The faults of a scan or map.
+pub(super) fn fault_rows(scan: &str, faults: &[FaultReport]) -> Vec<FaultRow> {
+    let row = |fault: &FaultReport| FaultRow {
+        scan: scan.to_owned(),
         fault: fault.fault.clone(),
         criterion: fault.criterion.clone(),
         decision: fault.decision.clone(),
@@ -60,5 +61,5 @@ pub(super) fn fault_rows(report: &ConditioningReport) -> Vec<FaultRow> {
         rms_slope_after: fault.rms_slope_after,
         high_frequency_ratio: fault.high_frequency_ratio,
     };
-    report.faults.iter().map(row).collect()
+    faults.iter().map(row).collect()
 }

@@ -5,6 +5,7 @@
 //! | `cleaning` | what was cleaned from the scans, for the people who decide on it |
 //! | `faults` | the table of the faults of the scans |
 //! | `files` | the scan files of a recipe: what is at its paths, with digests |
+//! | `maps` | maps that are kept beside their lines |
 //! | `picture` | pictures of the faults of a scan, in SVG |
 //! | `rows` | the tables of the stage |
 //! | `warnings` | what a user is told of the scans |
@@ -12,6 +13,7 @@
 mod cleaning;
 mod faults;
 mod files;
+mod maps;
 mod picture;
 mod rows;
 mod warnings;
@@ -19,6 +21,7 @@ mod warnings;
 pub use cleaning::{CLEANING_FILE, cleaning_markdown};
 pub use faults::{FAULTS, FaultRow};
 pub use files::{ScanFile, find_scans, inputs};
+pub use maps::{MAP_WINDOWS, MAPS, MapRow, maps_schema, read_maps};
 pub use picture::fault_figure;
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
@@ -29,6 +32,7 @@ use crate::scans::file::{CHANNELS, Format, Grid, MapLines, is_instrument, open_c
 use crate::scans::spreadsheet::is_workbook;
 use crate::scans::text_shape::TextShape;
 use crate::scans::{Described, FileError, FileProblem, Source, TextFormat, read_source};
+use crate::surface::map::condition::MapConditioning;
 use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
 use crate::units::Units;
 use faults::fault_rows;
@@ -83,7 +87,8 @@ pub struct Ingest {
     /// they are turned then. Texts have `invert_z` in their description.
     #[serde(default, skip_serializing_if = "is_false")]
     pub invert_instrument_heights: bool,
-    /// Lines of height maps that are taken as line scans, `rows` or `columns`. Required for maps.
+    /// Lines of height maps that are taken as line scans, `rows` or `columns`. Required for maps, unless `maps` keeps them:
+    /// then rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map_lines: Option<MapLines>,
     /// Every how many lines of a height map one is taken; 1 takes all.
@@ -99,6 +104,9 @@ pub struct Ingest {
     /// How the scans are brought to equal spacing and freed of faults and form.
     #[serde(default)]
     pub conditioning: Conditioning,
+    /// Keeps the maps themselves beside their lines, for areal surfaces, and says how they are freed of faults and form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub maps: Option<MapConditioning>,
 }
 
 impl Ingest {
@@ -108,6 +116,7 @@ impl Ingest {
         let channel = self.erd_channel;
         let shown = channel.unwrap_or_default();
         require(channel != Some(0), "ingest.erd_channel", shown, "1 or more, the first is 1")?;
+        self.maps.as_ref().map_or(Ok(()), MapConditioning::validate)?;
         Ok(self.conditioning.validate()?)
     }
 }
@@ -144,6 +153,8 @@ type Conditioned = (Vec<LineScan>, ConditioningReport);
 /// The line scans of a file, and what is to be told of it.
 struct ReadFile<T> {
     scans: Vec<T>,
+    /// The map that the file holds, where maps are kept.
+    map: Option<maps::ConditionedMap>,
     /// Whether it is text and not the file of an instrument.
     is_text: bool,
     /// Where the description contradicts the file.
@@ -187,7 +198,12 @@ pub fn run(
     share_spacing(&mut scans.flat_map(|(windows, _)| windows).collect::<Vec<_>>());
     let mut warnings = warnings::of_description(ingest, files, &read);
     let (mut datasets, mut reports) = (Vec::new(), Vec::new());
+    let (mut map_datasets, mut map_reports) = (Vec::new(), Vec::new());
     for (file, read) in files.iter().zip(read) {
+        if let Some((windows, report)) = read.map {
+            map_datasets.extend(windows.into_iter().map(|window| maps::dataset(window, file)));
+            map_reports.push(report);
+        }
         for (windows, report) in read.scans {
             datasets.extend(windows.into_iter().map(|window| dataset(window, file)));
             reports.push(report);
@@ -198,12 +214,22 @@ pub fn run(
     pending.write_arrays(SCANS, Storage::Plain, &datasets)?;
     let scans: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
     pending.write_rows(REPORT, &scans)?;
-    let faults: Vec<_> = reports.iter().flat_map(|report| fault_rows(report)).collect();
+    let of_lines = reports.iter().flat_map(|report| fault_rows(&report.scan, &report.faults));
+    let of_maps = map_reports.iter().flat_map(|report| fault_rows(&report.map, &report.faults));
+    let faults: Vec<_> = of_lines.chain(of_maps).collect();
     pending.write_rows(FAULTS, &faults)?;
     let windows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
     pending.write_rows(WINDOWS, &windows)?;
+    let map_windows: Vec<_> = map_reports.iter().flat_map(maps::map_rows).collect();
+    if ingest.maps.is_some() {
+        if map_reports.is_empty() {
+            return Err(StageError::NoMaps);
+        }
+        pending.write_arrays(MAPS, Storage::Plain, &map_datasets)?;
+        pending.write_rows(MAP_WINDOWS, &map_windows)?;
+    }
     let pictures = write_pictures(&reports, ingest.fault_pictures, pending)?;
-    let document = cleaning_markdown(&scans, &faults, &windows, &pictures);
+    let document = cleaning_markdown(&scans, &faults, &windows, &map_windows, &pictures);
     pending.write_document(CLEANING_FILE, &document)?;
     warnings.extend(warnings::of_scans(&reports));
     Ok(warnings)
@@ -255,11 +281,13 @@ fn read_scans(
     let start = if is_workbook(start) { start } else { &start[..start.len().min(START)] };
     let contradictions = TextShape::of(start).map(|shape| shape.contradictions(format));
     let contradictions = contradictions.unwrap_or_default();
+    let mut map = None;
     let scans = match read_source(&name, source, format)? {
         Described::Line(scan) => vec![RawScan { name: file.name.clone(), ..scan }],
-        Described::Map(map) => {
-            let lines = chosen_lines(ingest, file, map.grid)?;
-            map.line_scans(&file.name, lines, ingest.map_line_step).map_err(file_error)?
+        Described::Map(heights) => {
+            let lines = chosen_lines(ingest, file, heights.grid)?;
+            map = maps::kept(ingest, file, &heights)?;
+            heights.line_scans(&file.name, lines, ingest.map_line_step).map_err(file_error)?
         }
     };
     let condition = |scan| Ok(condition(scan, &ingest.conditioning)?);
@@ -268,6 +296,7 @@ fn read_scans(
         stuck: scans.iter().find_map(warnings::stuck),
         smooth: scans.iter().find_map(warnings::smooth),
         scans: scans.iter().map(condition).collect::<Result<_, StageError>>()?,
+        map,
         is_text: true,
         contradictions,
         channels: None,
@@ -280,6 +309,7 @@ fn chosen_lines(ingest: &Ingest, file: &ScanFile, grid: Grid) -> Result<MapLines
     match (grid, ingest.map_lines) {
         (_, Some(lines)) => Ok(lines),
         (Grid::Profile { .. }, None) => Ok(MapLines::Rows),
+        (Grid::Map { .. }, None) if ingest.maps.is_some() => Ok(MapLines::Rows),
         (Grid::Map { columns, rows, .. }, None) => {
             Err(StageError::MapLines { path: file.path.clone(), rows, columns })
         }
@@ -311,6 +341,7 @@ fn read_instrument(
 ) -> Result<ReadFile<Conditioned>, Failure> {
     let mut read = ReadFile {
         scans: Vec::new(),
+        map: None,
         is_text: false,
         contradictions: Vec::new(),
         channels: None,
@@ -323,7 +354,7 @@ fn read_instrument(
     let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
     read.channels = said(CHANNELS).map(|(_, channels)| channels.clone());
     let lines = chosen_lines(ingest, file, scan.grid).map_err(Box::new)?;
-    scan.lines(&file.name, lines, ingest.map_line_step, &mut |mut line: RawScan| {
+    let mut each = |mut line: RawScan| {
         if ingest.invert_instrument_heights {
             line.heights.iter_mut().for_each(|height| *height = -*height);
         }
@@ -338,7 +369,19 @@ fn read_instrument(
         }
         read.scans.push(condition(&line, &ingest.conditioning).map_err(Box::new)?);
         Ok::<(), Failure>(())
-    })?;
+    };
+    if ingest.maps.is_none() {
+        scan.lines(&file.name, lines, ingest.map_line_step, &mut each)?;
+        return Ok(read);
+    }
+    let mut whole = scan.whole()?;
+    for line in whole.line_scans(&file.name, lines, ingest.map_line_step)? {
+        each(line)?;
+    }
+    if ingest.invert_instrument_heights {
+        whole.heights.iter_mut().for_each(|height| *height = -*height);
+    }
+    read.map = maps::kept(ingest, file, &whole).map_err(Box::new)?;
     Ok(read)
 }
 

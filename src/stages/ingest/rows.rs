@@ -1,6 +1,6 @@
 //! The tables of the stage.
 
-use super::FAULTS;
+use super::{FAULTS, MAP_WINDOWS, MAPS};
 use crate::artifact::{
     ArrayFile, ArraysSchema, AttributeSchema, DatasetSchema, ResultFile, Row, SchemaVersion, Table,
 };
@@ -82,7 +82,14 @@ impl Row for WindowRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![SCANS.schema(), REPORT.schema(), FAULTS.schema(), WINDOWS.schema()]
+    vec![
+        SCANS.schema(),
+        REPORT.schema(),
+        FAULTS.schema(),
+        WINDOWS.schema(),
+        MAPS.schema(),
+        MAP_WINDOWS.schema(),
+    ]
 }
 
 /// What [`SCANS`] holds.

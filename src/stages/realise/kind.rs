@@ -33,9 +33,30 @@ pub enum Method {
     /// The fitted sines with random phases, the method of the thesis.
     #[default]
     Sines,
+    /// Areal: the windows of the maps themselves, made periodic in both directions.
+    ArealMeasured,
+    /// Areal: the spectrum and the heights of a map, other phases.
+    ArealMatched,
+    /// Areal: the spectrum of a map, random phases.
+    ArealRandomPhase,
+    /// Areal: the isotropic spectrum of the line scans, random phases.
+    Isotropic,
 }
 
 impl Method {
+    /// All methods.
+    pub const ALL: [Self; 9] = [
+        Self::Measured,
+        Self::MeasuredBackward,
+        Self::Matched,
+        Self::RandomPhase,
+        Self::Sines,
+        Self::ArealMeasured,
+        Self::ArealMatched,
+        Self::ArealRandomPhase,
+        Self::Isotropic,
+    ];
+
     /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -44,17 +65,42 @@ impl Method {
             Self::Matched => "matched",
             Self::RandomPhase => "random-phase",
             Self::Sines => "sines",
+            Self::ArealMeasured => "areal-measured",
+            Self::ArealMatched => "areal-matched",
+            Self::ArealRandomPhase => "areal-random-phase",
+            Self::Isotropic => "isotropic",
         }
     }
 
     /// Whether the surfaces are the windows themselves, of which there are as many as were scanned.
     pub fn is_measured(self) -> bool {
-        matches!(self, Self::Measured | Self::MeasuredBackward)
+        matches!(self, Self::Measured | Self::MeasuredBackward | Self::ArealMeasured)
     }
 
     /// Whether a surface is that of one window of the scans, at its own phases or at others.
     pub fn of_a_window(self) -> bool {
-        self != Self::Sines
+        !matches!(self, Self::Sines | Self::Isotropic)
+    }
+
+    /// Whether the surfaces are rough in both directions.
+    pub fn is_areal(self) -> bool {
+        use Method::{ArealMatched, ArealMeasured, ArealRandomPhase, Isotropic};
+        matches!(self, ArealMeasured | ArealMatched | ArealRandomPhase | Isotropic)
+    }
+
+    /// Whether a recipe may name it in `realise.methods`; the others follow from its other keys.
+    pub(super) fn is_a_choice(self) -> bool {
+        self == Self::Isotropic || !self.is_areal() && self != Self::MeasuredBackward
+    }
+
+    /// What a method of windows of line scans is called where the windows are maps.
+    pub fn areal(self) -> Option<Self> {
+        match self {
+            Self::Measured => Some(Self::ArealMeasured),
+            Self::Matched => Some(Self::ArealMatched),
+            Self::RandomPhase => Some(Self::ArealRandomPhase),
+            _ => None,
+        }
     }
 }
 
@@ -121,6 +167,10 @@ impl fmt::Display for SurfaceKind {
             Method::Matched => f.pad("matched phases"),
             Method::RandomPhase => f.pad("random phases"),
             Method::Sines => f.pad(&format!("{} waves", self.waves)),
+            Method::ArealMeasured => f.pad("measured maps"),
+            Method::ArealMatched => f.pad("maps, matched phases"),
+            Method::ArealRandomPhase => f.pad("maps, random phases"),
+            Method::Isotropic => f.pad("isotropic surfaces"),
         }
     }
 }
@@ -131,13 +181,7 @@ mod tests {
 
     #[test]
     fn every_method_has_one_name_everywhere() {
-        for method in [
-            Method::Measured,
-            Method::MeasuredBackward,
-            Method::Matched,
-            Method::RandomPhase,
-            Method::Sines,
-        ] {
+        for method in Method::ALL {
             let text = serde_json::to_string(&method).unwrap();
             assert_eq!(text, format!("\"{method}\""));
             let typed = <Method as clap::ValueEnum>::from_str(method.name(), false);

@@ -3,21 +3,25 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `areal` | areal surfaces: of maps, and isotropic ones of lines |
 //! | `kind` | how surfaces are made of a road, and what tables call them |
 //! | `profiles` | surfaces of the windows of the scans |
 
+mod areal;
 mod kind;
 mod profiles;
 
 use super::approximate::{ScaleRow, WAVES};
+use super::characterise::ISOTROPIC;
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::ingest::{SCANS, read_windows};
+use super::ingest::{MAPS, SCANS, read_maps, read_windows};
 use super::{Stage, StageError};
-use crate::artifact::{Row, RunView, SchemaVersion, Table};
+use crate::artifact::{Row, RunView, SchemaVersion, Storage, Table};
 use crate::requirement::{InvalidRecipe, require};
 use crate::surface::realisation::random_phases;
 use crate::surface::{Closure, SineScale, Wave};
 use crate::units::Units;
+pub use areal::{AREAL, AREAL_SURFACES, ArealRow, ArealSurface, areal_schema, read_areal_surfaces};
 pub use kind::{Method, SurfaceKind};
 pub(crate) use profiles::LONGEST_GAP;
 #[cfg(test)]
@@ -43,9 +47,17 @@ static CONTRACT: Contract = Contract {
 
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let chain = request.chain()?;
-    let run = |inputs: &Inputs, context: &mut Context| run(chain.realise, &inputs.results, context);
-    let planned = Planned::new(json!(chain.realise), run).reading(WAVES);
-    Some(planned.reading_if(chain.realise.has_windows(), SCANS))
+    let (realise, maps) = (chain.realise, chain.has_maps());
+    let run =
+        move |inputs: &Inputs, context: &mut Context| run(realise, maps, &inputs.results, context);
+    let planned = Planned::new(json!(realise), run).reading(WAVES);
+    let isotropic = realise.is_isotropic();
+    Some(
+        planned
+            .reading_if(realise.has_windows() || isotropic, SCANS)
+            .reading_if(maps && realise.names_windows(), MAPS)
+            .reading_if(isotropic, ISOTROPIC),
+    )
 }
 
 /// Section `[realise]` of a recipe.
@@ -54,13 +66,25 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
 pub struct Realise {
     /// How surfaces are made of the road, in one way or several: `measured`, every window of the scans made periodic;
     /// `matched`, the spectrum and the heights of a window with other phases; `random-phase`, its spectrum with random
-    /// phases; `sines`, the fitted sines with random phases.
+    /// phases; `sines`, the fitted sines with random phases; `isotropic`, areal surfaces of random phases whose lines have the
+    /// averaged spectrum of the scans. Where maps are kept (`[ingest.maps]`), the first three make areal surfaces of them too.
     #[serde(default = "sines_alone", skip_serializing_if = "is_sines_alone")]
     pub methods: Vec<Method>,
+    /// Whether the line scans make surfaces too where maps are kept.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub profiles: bool,
+    /// Number of areal surfaces that are drawn of each method; that of `realisations`, at most 8, if not set: an areal surface
+    /// has far less scatter than a profile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub areal_realisations: Option<u32>,
+    /// Period in mm of isotropic surfaces; the length of a window of the scans if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub isotropic_period_mm: Option<f64>,
     /// Directions in which the rubber slides over `measured` windows: a road is not the same in both.
     #[serde(default = "forward_alone", skip_serializing_if = "is_forward_alone")]
     pub directions: Vec<Direction>,
-    /// How a window is made periodic; `mirror` if not set, which makes both directions the same.
+    /// How a window is made periodic; `mirror` if not set, which makes both directions the same; of maps `blend`, because
+    /// mirrored ones have four times the points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Closure>,
     /// Shortest wavelength in mm of the surfaces of windows; that of the fitted sines if not set.
@@ -94,6 +118,7 @@ impl Realise {
         let keys = [
             ("realise.realisations", self.realisations),
             ("realise.most_realisations", self.most_realisations),
+            ("realise.areal_realisations", self.areal_realisations),
         ];
         for (key, count) in keys.into_iter().filter_map(|(key, count)| Some((key, count?))) {
             require((1..=100_000).contains(&count), key, count, "1 to 100000")?;
@@ -111,9 +136,9 @@ impl Realise {
         let names = |methods: &[Method]| methods.iter().map(|m| m.name()).collect::<Vec<_>>();
         let methods = &self.methods;
         let once = methods.iter().enumerate().all(|(i, a)| !methods[..i].contains(a));
-        let known = !methods.contains(&Method::MeasuredBackward);
-        let wanted = "one or several of measured, matched, random-phase and sines, each once \
-                      (directions: realise.directions)";
+        let known = methods.iter().all(|method| method.is_a_choice());
+        let wanted = "one or several of measured, matched, random-phase, sines and isotropic, each once \
+                      (directions: realise.directions; areal surfaces of maps: a section [ingest.maps])";
         let valid = !methods.is_empty() && once && known;
         require(valid, "realise.methods", names(methods), wanted)?;
         let sines = methods.contains(&Method::Sines);
@@ -138,15 +163,35 @@ impl Realise {
         for (key, length) in lengths.into_iter().filter_map(|(key, mm)| Some((key, mm?))) {
             require(length > 0.0 && length.is_finite(), key, length, "positive and finite")?;
             let wanted = "left out unless realise.methods has surfaces of windows";
-            require(self.has_windows(), key, length, wanted)?;
+            require(self.names_windows() || self.is_isotropic(), key, length, wanted)?;
+        }
+        if let Some(period) = self.isotropic_period_mm {
+            let key = "realise.isotropic_period_mm";
+            let wanted = "positive, and left out unless realise.methods names isotropic";
+            require(
+                period > 0.0 && period.is_finite() && self.is_isotropic(),
+                key,
+                period,
+                wanted,
+            )?;
         }
         let windows = self.most_windows.unwrap_or(1);
         require(windows > 0, "realise.most_windows", windows, "1 or more")
     }
 
-    /// Whether there are surfaces of windows of the scans.
+    /// Whether there are profiles of windows of the scans.
     pub fn has_windows(&self) -> bool {
+        self.profiles && self.names_windows()
+    }
+
+    /// Whether a method makes surfaces of windows, of line scans or of maps.
+    pub fn names_windows(&self) -> bool {
         self.methods.iter().any(|method| method.of_a_window())
+    }
+
+    /// Whether there are isotropic areal surfaces.
+    pub fn is_isotropic(&self) -> bool {
+        self.methods.contains(&Method::Isotropic)
     }
 
     /// Whether there are surfaces whose phases are drawn.
@@ -158,6 +203,24 @@ impl Realise {
     pub fn drawn(&self) -> u32 {
         self.most_realisations.or(self.realisations).unwrap_or(0)
     }
+
+    /// Number of areal surfaces that are drawn of each method.
+    pub fn areal_drawn(&self) -> u32 {
+        self.areal_realisations.unwrap_or(self.drawn().min(MOST_AREAL))
+    }
+}
+
+/// Most areal surfaces that are drawn unless the recipe says otherwise.
+const MOST_AREAL: u32 = 8;
+
+fn yes() -> bool {
+    true
+}
+
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_yes(flag: &bool) -> bool {
+    *flag
 }
 
 fn sines_alone() -> Vec<Method> {
@@ -221,7 +284,7 @@ impl Row for SurfaceRow {
 
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![SURFACES.schema(), PROFILES.schema()]
+    vec![SURFACES.schema(), PROFILES.schema(), AREAL_SURFACES.schema(), AREAL.schema()]
 }
 
 /// Makes the surfaces and writes them; returns warnings.
@@ -231,21 +294,21 @@ pub fn schemas() -> Vec<SchemaVersion> {
 ///
 /// # Errors
 /// [`StageError::NoWaves`] for an approximation without a wave of positive amplitude; [`StageError::Periodic`] where no
-/// window can be made periodic.
+/// window can be made periodic; those of maps.
 pub fn run(
     parameters: &Realise,
+    maps: bool,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
     let fitted = run.rows(WAVES)?;
     let seed = parameters.seed.unwrap_or_default();
     let (mut rows, mut realised, mut warnings) = (Vec::new(), Vec::<u32>::new(), Vec::new());
+    let fitted_mm = fitted.iter().map(|row| row.wavelength_mm).fold(f64::INFINITY, f64::min);
+    let shortest = parameters.shortest_wavelength_mm.unwrap_or(fitted_mm).mm_to_m();
     if parameters.has_windows() {
-        let fitted_mm = fitted.iter().map(|row| row.wavelength_mm).fold(f64::INFINITY, f64::min);
-        let shortest_mm = parameters.shortest_wavelength_mm.unwrap_or(fitted_mm);
         let windows = read_windows(run)?;
-        let (surfaces, profiles, told) =
-            profiles::of_windows(parameters, &windows, shortest_mm.mm_to_m())?;
+        let (surfaces, profiles, told) = profiles::of_windows(parameters, &windows, shortest)?;
         for surface in surfaces {
             let (kind, realisation) = (surface.kind, surface.realisation);
             rows.extend(surface_rows(kind, realisation, surface.profile));
@@ -273,6 +336,35 @@ pub fn run(
         }
     }
     context.pending.write_rows(SURFACES, &rows)?;
+    warnings.extend(write_areal(parameters, maps, shortest, run, context)?);
+    Ok(warnings)
+}
+
+/// Makes the areal surfaces and writes them; returns warnings.
+fn write_areal(
+    parameters: &Realise,
+    maps: bool,
+    shortest: f64,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let (mut surfaces, mut rows, mut warnings) = areal::ArealSurfaces::default();
+    if maps && parameters.names_windows() {
+        (surfaces, rows, warnings) = areal::of_maps(parameters, read_maps(run)?, shortest)?;
+    }
+    if parameters.is_isotropic() {
+        let (windows, spectrum) = (read_windows(run)?, run.rows(ISOTROPIC)?);
+        let (more, their_rows, told) = areal::isotropic(parameters, &windows, &spectrum, shortest)?;
+        surfaces.extend(more);
+        rows.extend(their_rows);
+        warnings.extend(told);
+    }
+    if surfaces.is_empty() {
+        return Ok(warnings);
+    }
+    context.pending.write_rows(AREAL_SURFACES, &rows)?;
+    let datasets: Vec<_> = surfaces.into_iter().map(areal::dataset).collect();
+    context.pending.write_arrays(AREAL, Storage::Plain, &datasets)?;
     Ok(warnings)
 }
 

@@ -144,7 +144,7 @@ fn surfaces_to_make(parameters: &Realise, windows: usize) -> Vec<(Method, usize)
     let mut found = Vec::new();
     for method in &parameters.methods {
         match method {
-            Method::Sines | Method::MeasuredBackward => {}
+            Method::Sines | Method::MeasuredBackward | Method::Isotropic => {}
             Method::Measured => {
                 for direction in &parameters.directions {
                     let method = match direction {
@@ -179,7 +179,7 @@ fn surface(
             (random_phases(&scales, seed, u64::from(realisation)), None)
         }
         Method::MeasuredBackward => (profile.reversed().waves, None),
-        Method::Measured | Method::Sines => (profile.waves.clone(), None),
+        _ => (profile.waves.clone(), None),
     };
     (Surface { kind: SurfaceKind::of(method), realisation, profile: waves }, mismatch)
 }

@@ -8,7 +8,7 @@ use crate::stages::approximate::GROUPS;
 use crate::stages::bem::{SCAN_ERRORS, ScanErrorRow};
 use crate::stages::friction::Condition;
 use crate::stages::ingest::WINDOWS;
-use crate::stages::realise::{Method, PROFILES, Surface, SurfaceKind};
+use crate::stages::realise::{ArealRow, PROFILES, Surface, SurfaceKind};
 use crate::units::Units;
 use std::collections::BTreeMap;
 
@@ -26,7 +26,12 @@ pub(super) struct Basis {
 
 impl Basis {
     /// Reads it from a run; `has_scans` where the recipe has.
-    pub fn read(run: &RunView, surfaces: &[Surface], has_scans: bool) -> Result<Self, StageError> {
+    pub fn read(
+        run: &RunView,
+        surfaces: &[Surface],
+        areal: &[ArealRow],
+        has_scans: bool,
+    ) -> Result<Self, StageError> {
         let windows = if has_scans {
             let kept = run.rows(WINDOWS)?.iter().filter(|row| row.rejected.is_none()).count();
             Some(kept as u32)
@@ -42,12 +47,14 @@ impl Basis {
             let known = shortest_mm.entry(surface.kind).or_insert(f64::INFINITY);
             *known = known.min(shortest.m_to_mm());
         }
+        for row in areal {
+            shortest_mm.insert(row.kind, row.shortest_wavelength_mm);
+        }
+        let of_profiles = profiles.into_iter().map(|row| ((row.kind, row.realisation), row.window));
+        let of_maps = areal.iter().map(|row| ((row.kind, row.realisation), row.window.clone()));
         Ok(Self {
             windows,
-            window_of: profiles
-                .into_iter()
-                .map(|row| ((row.kind, row.realisation), row.window))
-                .collect(),
+            window_of: of_profiles.chain(of_maps).collect(),
             shortest_mm,
             scan_errors: run.rows(SCAN_ERRORS)?,
         })
@@ -67,7 +74,7 @@ impl Basis {
     }
 
     fn windows_of(&self, kind: SurfaceKind) -> u32 {
-        if kind.method == Method::Sines {
+        if !kind.method.of_a_window() {
             return self.windows.unwrap_or(0);
         }
         let own = self.window_of.iter().filter(|((of, _), _)| *of == kind);
@@ -88,7 +95,7 @@ impl Basis {
     }
 
     fn scan_error(&self, row: &FrictionRow) -> Option<f64> {
-        if row.kind.method != Method::Sines || self.windows.is_none() {
+        if row.kind.method.of_a_window() || self.windows.is_none() {
             return Some(0.0);
         }
         let same = |error: &&ScanErrorRow| {
@@ -113,7 +120,7 @@ pub(super) fn sum_of_errors(row: &FrictionRow) -> Option<f64> {
     let scatter = match row.model {
         // The average of two sorts of realisations states no degrees of freedom: many make the standard error the largest.
         Model::Multilevel => f64::from(u32::MAX),
-        _ if row.kind.method == Method::Sines => freedom(row.realisations.len() as u32),
+        _ if !row.kind.method.of_a_window() => freedom(row.realisations.len() as u32),
         _ => freedom(row.windows),
     };
     let groups = row.windows.min(GROUPS as u32);

@@ -3,7 +3,7 @@
 use super::{FrictionRow, Model};
 use crate::artifact::{Row, Table};
 use crate::stages::bem::Given;
-use crate::stages::realise::{Method, SurfaceKind};
+use crate::stages::realise::SurfaceKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -127,14 +127,14 @@ fn parts(row: &FrictionRow, rows: &[FrictionRow]) -> Vec<(Part, Option<f64>, Str
         format!("{scans} more windows of scans halve it")
     };
     let mut parts = Vec::new();
-    if row.kind.method == Method::Sines {
+    if row.kind.method.of_a_window() {
+        parts.push((Part::Scans, row.confidence_95, more_scans));
+    } else {
         let more =
             four_times(row.half_space_realisations.map_or(row.realisations.len(), |n| n as usize));
         let more = format!("{more} more realisations halve it (realise.realisations)");
         parts.push((Part::Phases, row.confidence_95, more));
         parts.push((Part::Scans, row.scan_error, more_scans));
-    } else {
-        parts.push((Part::Scans, row.confidence_95, more_scans));
     }
     if row.model == Model::Hybrid {
         let more = "four times as many stretches halve it (micro.stretches)".to_owned();
@@ -146,6 +146,9 @@ fn parts(row: &FrictionRow, rows: &[FrictionRow]) -> Vec<(Part, Option<f64>, Str
         Model::Multilevel => {
             (Part::Mesh, "more elements (multilevel.columns_per_shortest_wavelength)")
         }
+        _ if row.kind.method.is_areal() => {
+            (Part::Grid, "a finer grid (areal.points_per_shortest_wavelength)")
+        }
         _ => {
             (Part::Grid, "a finer grid (bem.points_per_shortest_wavelength or bem.grid_tolerance)")
         }
@@ -155,6 +158,7 @@ fn parts(row: &FrictionRow, rows: &[FrictionRow]) -> Vec<(Part, Option<f64>, Str
         Model::Hybrid => "a smaller micro.tolerance",
         Model::Fem => "a smaller fem.pressure_ratio",
         Model::Multilevel => "a smaller multilevel.pressure_ratio",
+        _ if row.kind.method.is_areal() => "a smaller areal.tolerance",
         _ => "a smaller bem.tolerance",
     };
     parts.push((Part::Interpolation, Some(row.interpolation_error), denser.to_owned()));
@@ -183,6 +187,10 @@ fn model_part(row: &FrictionRow, rows: &[FrictionRow]) -> Option<(Part, Option<f
         return Some((Part::Model, Some(error), format!("take the model {}", other.model)));
     }
     match row.model {
+        Model::Bem if row.kind.method.is_areal() => {
+            let remedy = "not known: there is no finite deformation of areal surfaces; that of the profiles is a guide";
+            Some((Part::Model, None, remedy.into()))
+        }
         Model::Bem => {
             let remedy =
                 "not known: finite deformation tells it (a section [micro], [fem] or [multilevel])";

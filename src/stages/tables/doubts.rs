@@ -4,7 +4,7 @@
 use super::{FrictionRow, Model, TheoryConstants};
 use crate::rubber::Rubber;
 use crate::stages::micro::{Parting, partings};
-use crate::stages::realise::Surface;
+use crate::stages::realise::{ArealRow, Surface};
 use crate::surface::{SineScale, Wave};
 use crate::theory::Persson;
 use crate::units::Units;
@@ -61,6 +61,26 @@ pub(super) fn doubts(
         ));
     }
     warnings
+}
+
+/// A warning of areal surfaces that are steeper than a linear model of contact admits.
+pub(super) fn steep_maps(surfaces: &[ArealRow]) -> Option<String> {
+    let of_kind = surfaces.chunk_by(|a, b| a.kind == b.kind);
+    let steep: Vec<String> = of_kind
+        .filter_map(|own| {
+            let square: f64 = own.iter().map(|row| row.rms_gradient.powi(2)).sum();
+            let gradient = (square / own.len() as f64).sqrt();
+            (gradient > STEEP).then(|| format!("{gradient:.2} by {}", own[0].kind))
+        })
+        .collect();
+    (!steep.is_empty()).then(|| {
+        format!(
+            "root mean square gradients of areal surfaces are left to the half-space, which is linear in slopes: {}; there is \
+             no finite deformation of areal surfaces: see what [micro] or [fem] change of the profiles, or raise \
+             realise.shortest_wavelength_mm",
+            steep.join(", ")
+        )
+    })
 }
 
 /// Root mean square slope of what is left to the half-space, in the mean over the surfaces.

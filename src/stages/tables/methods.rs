@@ -51,9 +51,12 @@ impl Row for MethodRow {
 }
 
 /// Every average of a kind of surfaces beside that of the measured profiles of the same model, at the same speed and area
-/// or pressure; those of the measured profiles themselves have the ratio 1.
+/// or pressure; those of the measured profiles themselves have the ratio 1. Where no profile was measured, beside that of the
+/// measured maps.
 pub(super) fn compared(rows: &[FrictionRow]) -> Vec<MethodRow> {
-    let measured = |row: &&FrictionRow| row.kind.method == Method::Measured;
+    let has = |method: Method| rows.iter().any(|row| row.kind.method == method);
+    let road = if has(Method::Measured) { Method::Measured } else { Method::ArealMeasured };
+    let measured = |row: &&FrictionRow| row.kind.method == road;
     let of_row = |row: &FrictionRow| {
         let same = |other: &&FrictionRow| {
             other.model == row.model
@@ -78,6 +81,12 @@ pub(super) fn compared(rows: &[FrictionRow]) -> Vec<MethodRow> {
     rows.iter().filter_map(of_row).collect()
 }
 
+/// Whether there is anything beside the measured road.
+pub(super) fn differ(rows: &[MethodRow]) -> bool {
+    rows.windows(2).any(|pair| pair[0].kind != pair[1].kind)
+        || rows.iter().any(|row| !row.kind.method.is_measured())
+}
+
 /// Ratio of the means and half width of its 95 % interval.
 fn ratio(row: &FrictionRow, road: &FrictionRow) -> (f64, Option<f64>) {
     let ratio = row.mean / road.mean;
@@ -85,7 +94,9 @@ fn ratio(row: &FrictionRow, road: &FrictionRow) -> (f64, Option<f64>) {
         return (ratio, Some(0.0));
     }
     let windows = road.realisations.len();
-    if row.kind.method.of_a_window() && row.realisations.len() >= windows {
+    // A map and a line of it are not the same window.
+    let same_sort = row.kind.method.is_areal() == road.kind.method.is_areal();
+    if same_sort && row.kind.method.of_a_window() && row.realisations.len() >= windows {
         return (ratio, of_pairs(&by_window(&row.realisations, windows), &road.realisations));
     }
     let relative = |row: &FrictionRow| row.confidence_95.map(|half| half / row.mean);

@@ -27,13 +27,14 @@ mod rows;
 mod theories;
 
 use super::approximate::WAVES;
+use super::areal::AREAL_CURVES;
 use super::bem::{CURVES, Given};
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::fem;
 use super::friction::{Condition, FrictionAt};
 use super::hybrid::{self, Hybrid};
-use super::realise::{Method, read_surfaces};
+use super::realise::{AREAL_SURFACES, read_surfaces};
 use super::{Stage, StageError};
 use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
@@ -85,6 +86,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         fem: chain.fem.is_some(),
         multilevel: chain.multilevel.is_some(),
         scans: chain.ingest.is_some(),
+        angle_deg: chain.areal.angles_deg.first().copied().filter(|_| chain.has_areal_surfaces()),
     };
     let mut parameters = json!(tables);
     // Where the published tables are is no parameter: their names and digests are inputs.
@@ -109,6 +111,8 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         .reading(super::realise::SURFACES)
         .reading_if(chain.realise.has_windows(), super::realise::PROFILES)
         .reading_if(chain.ingest.is_some(), super::ingest::WINDOWS)
+        .reading_if(models.angle_deg.is_some(), super::areal::AREAL_CURVES)
+        .reading_if(models.angle_deg.is_some(), super::realise::AREAL_SURFACES)
         .reading_if(!tables.published_corrections.is_empty(), super::micro::SAMPLES);
     Some(planned.with_inputs(request.published.clone()))
 }
@@ -158,6 +162,8 @@ pub struct Models {
     pub multilevel: bool,
     /// The recipe has scans.
     pub scans: bool,
+    /// The first direction of sliding over areal surfaces, if there are any.
+    pub angle_deg: Option<f64>,
 }
 
 impl Models {
@@ -190,9 +196,15 @@ pub fn run(
     let (fitted, metadata) = run.read_table(WAVES)?;
     let half_space = run.rows(CURVES)?;
     let surfaces = read_surfaces(run)?;
-    let basis = Basis::read(run, &surfaces, models.scans)?;
+    let areal = if models.angle_deg.is_some() { run.rows(AREAL_SURFACES)? } else { Vec::new() };
+    let basis = Basis::read(run, &surfaces, &areal, models.scans)?;
     let bem: Vec<FrictionAt> = half_space.iter().map(FrictionAt::from).collect();
     let mut rows = average(Model::Bem, bem.clone());
+    if let Some(angle_deg) = models.angle_deg {
+        let curves = run.rows(AREAL_CURVES)?;
+        let first = curves.iter().filter(|row| row.angle_deg == angle_deg);
+        rows.extend(average(Model::Bem, first.map(FrictionAt::from).collect()));
+    }
     if models.hybrid.is_some() {
         let hybrid = run.rows(hybrid::HYBRID)?;
         let values = hybrid.iter().filter_map(FrictionAt::corrected).collect();
@@ -220,6 +232,7 @@ pub fn run(
     }
     basis.complete(&mut rows);
     warnings.extend(doubts(&rows, &surfaces, rubber, models.threshold()));
+    warnings.extend(doubts::steep_maps(&areal));
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings
@@ -227,7 +240,7 @@ pub fn run(
     context.pending.write_rows(FRICTION, &rows)?;
     context.pending.write_rows(BUDGET, &budget(&rows))?;
     let methods = methods::compared(&rows);
-    if methods.iter().any(|row| row.kind.method != Method::Measured) {
+    if methods::differ(&methods) {
         context.pending.write_rows(METHODS, &methods)?;
     }
     if models.hybrid.is_some() || models.fem || models.multilevel || !theories.is_empty() {

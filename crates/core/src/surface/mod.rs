@@ -44,7 +44,7 @@ mod table_3_1;
 pub use condition::{Conditioning, ConditioningError, ConditioningReport, condition};
 pub use correlation::{CorrelationSample, HeightDifferenceCorrelation};
 pub use ladder::Ladder;
-pub use map::HeightMap;
+pub use map::{HeightMap, PeriodicMap, PeriodicMapError};
 pub use parameters::RoughnessParameters;
 pub use periodic::{Closure, PeriodicError, PeriodicProfile};
 pub use scan::{LineScan, RawScan};

@@ -208,7 +208,7 @@ impl Contact<'_> {
     fn residual(&self, set: &[u32], scale: f64) -> f64 {
         let largest =
             set.iter().map(|i| self.separation(*i as usize).abs()).fold(0.0_f64, f64::max);
-        let mean = self.pressure.iter().sum::<f64>() / self.pressure.len() as f64;
+        let mean = mean(&self.pressure);
         (largest / scale).max((mean / self.mean_pressure - 1.0).abs())
     }
 

@@ -288,16 +288,34 @@ fn signed(index: usize, n: usize) -> i64 {
     if 2 * index > n { index as i64 - n as i64 } else { index as i64 }
 }
 
-/// Mean, about the first value, so that a uniform field keeps its digits.
+/// Mean by a compensated sum (Neumaier 1974, doi:10.1002/zamm.19740540106): a field with few large values keeps its digits,
+/// and so does a uniform one.
 pub(super) fn mean(values: &[f64]) -> f64 {
-    let first = values[0];
-    first + values.iter().map(|x| x - first).sum::<f64>() / values.len() as f64
+    let (mut sum, mut lost) = (0.0_f64, 0.0);
+    for x in values {
+        let next = sum + x;
+        lost += if sum.abs() >= x.abs() { (sum - next) + x } else { (x - next) + sum };
+        sum = next;
+    }
+    (sum + lost) / values.len() as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::rubber::Rubber;
+
+    #[test]
+    fn the_mean_of_few_large_values_among_many_zeros_has_all_digits() {
+        // A peak at the first point, with pressures of thirty times the mean on 3 % of the points.
+        let count = 1 << 18;
+        let value =
+            |k: usize| if k.is_multiple_of(29) { 7.1e5 + 1e3 * (k as f64).sin() } else { 0.0 };
+        let field: Vec<f64> = (0..count).map(value).collect();
+        let known: f64 = field.iter().filter(|x| **x != 0.0).map(|x| x / count as f64).sum();
+        approx::assert_relative_eq!(mean(&field), known, max_relative = 1e-13);
+        assert_eq!(mean(&vec![0.1; 1000]), 0.1);
+    }
 
     fn body(rubber: &Rubber, thickness: Option<f64>) -> Body<'_> {
         let sliding = Sliding { speed: 0.2, angle: 0.7 };

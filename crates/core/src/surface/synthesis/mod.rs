@@ -1,4 +1,4 @@
-//! Synthetic line scans of asphalt, as a profilometer would give them.
+//! Synthetic line scans and maps of asphalt, as a profilometer would give them.
 //!
 //! A stationary random surface is prescribed by its height-difference correlation (HDC) and its
 //! skewness. Over a period much longer than a scan, so that a scan is a window with the natural
@@ -13,6 +13,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `parameters` | the parameters of a synthetic surface and their ranges |
+//! | `map` | height maps of a random surface |
 //! | `field` | Gaussian fields of prescribed autocorrelation by circulant embedding |
 //! | `stones` | stones pressed to a level, with pits between them |
 //! | `translation` | heights with skewness from a Gaussian field |
@@ -22,12 +23,14 @@
 
 mod field;
 mod instrument;
+mod map;
 mod parameters;
 mod random;
 mod stones;
 mod text;
 mod translation;
 
+pub use map::SyntheticMap;
 pub use parameters::{HeightMoments, OuterRegime, Stones, SynthesisError, SyntheticAsphalt};
 pub use text::write_text;
 

@@ -270,15 +270,25 @@ fn check(
     Err(SynthesisError::OutOfRange { parameter, value, allowed: allowed() })
 }
 
-fn positive(parameter: &'static str, value: f64) -> Result<(), SynthesisError> {
+pub(super) fn positive(parameter: &'static str, value: f64) -> Result<(), SynthesisError> {
     check(value > 0.0, parameter, value, || "positive and finite".into())
 }
 
-fn between(parameter: &'static str, value: f64, low: f64, high: f64) -> Result<(), SynthesisError> {
+pub(super) fn between(
+    parameter: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<(), SynthesisError> {
     check(value > low && value < high, parameter, value, || format!("above {low} and below {high}"))
 }
 
-fn within(parameter: &'static str, value: f64, low: f64, high: f64) -> Result<(), SynthesisError> {
+pub(super) fn within(
+    parameter: &'static str,
+    value: f64,
+    low: f64,
+    high: f64,
+) -> Result<(), SynthesisError> {
     check(value >= low && value <= high, parameter, value, || match high {
         f64::MAX => format!("at least {low} and finite"),
         _ => format!("from {low} to {high}"),
