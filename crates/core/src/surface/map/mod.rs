@@ -1,4 +1,26 @@
 //! Heights over a plane: maps as instruments deliver them, and what is done with them.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`parameters`], [`functional`] | parameters of ISO 25178-2, those of the material ratio curve |
+//! | [`correlation`] | height-difference correlation along directions, anisotropy |
+//! | [`spectrum`] | two-dimensional power spectrum |
+//! | [`error`] | maps that cannot be evaluated |
+
+pub mod correlation;
+pub mod error;
+pub mod functional;
+pub mod parameters;
+pub mod spectrum;
+
+mod gradient;
+mod lags;
+mod transform;
+
+pub use correlation::ArealCorrelation;
+pub use error::ArealError;
+pub use parameters::ArealParameters;
+pub use spectrum::ArealSpectrum;
 
 /// Heights on a grid of equal spacing along each direction.
 #[derive(Debug, Clone, PartialEq)]
