@@ -177,3 +177,130 @@ fn harmonic(values: &[f64]) -> (f64, f64, f64) {
     let run = (-sine).atan2(-cosine).to_degrees() / 2.0;
     (mean, cosine.hypot(sine), run.rem_euclid(180.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_maps::{gaussian, map, noise, with_gaps};
+    use super::*;
+    use approx::assert_relative_eq;
+    use std::f64::consts::TAU;
+
+    /// Sum over all pairs one by one.
+    fn by_hand(map: &HeightMap, [k, l]: [isize; 2]) -> (f64, u64) {
+        let [nx, ny] = map.points.map(|points| points as isize);
+        let (mut sum, mut pairs) = (0.0, 0);
+        for j in 0..ny {
+            for i in 0..nx {
+                if (0..nx).contains(&(i + k)) && (0..ny).contains(&(j + l)) {
+                    let at = |i: isize, j: isize| map.heights[(j * nx + i) as usize];
+                    let difference = at(i + k, j + l) - at(i, j);
+                    if !difference.is_nan() {
+                        sum += difference * difference;
+                        pairs += 1;
+                    }
+                }
+            }
+        }
+        (sum / pairs as f64, pairs)
+    }
+
+    #[test]
+    fn the_correlation_is_that_of_all_pairs_of_a_map_with_missing_points() {
+        for points in [[23, 17], [16, 30]] {
+            let mut map = with_gaps(noise(points, [2e-6, 5e-6], 4), 6);
+            map.heights.iter_mut().for_each(|z| *z += 7.0);
+            let correlation = ArealCorrelation::of(&map, Some(1.0)).unwrap();
+            let [x, y] = points.map(|points| points as isize - 1);
+            assert_eq!(correlation.maximum_lags(), points.map(|points| points - 1));
+            for (k, l) in (-y..=y).flat_map(|l| (-x..=x).map(move |k| (k, l))) {
+                let (value, pairs) = by_hand(&map, [k, l]);
+                match correlation.at([k, l]) {
+                    Some(sample) => {
+                        assert_eq!(sample.pairs, pairs, "{k} {l}");
+                        assert_relative_eq!(sample.value, value, epsilon = 1e-12);
+                        assert_relative_eq!(sample.lag, (k as f64 * 2e-6).hypot(l as f64 * 5e-6));
+                    }
+                    None => assert_eq!(pairs, 0, "{k} {l}"),
+                }
+            }
+            assert_eq!(correlation.at([x + 1, 0]), None);
+        }
+    }
+
+    #[test]
+    fn directions_along_grid_lines_are_lags_of_the_grid() {
+        let map = noise([40, 30], [1e-6, 1e-6], 1);
+        let correlation = ArealCorrelation::of(&map, None).unwrap();
+        for (angle, [k, l]) in
+            [(0.0, [1, 0]), (90.0, [0, 1]), (45.0, [1, 1]), (135.0, [-1, 1]), (-45.0, [1, -1])]
+        {
+            for n in [1, 2, 11] {
+                let point = correlation.at([n * k, n * l]).unwrap();
+                let found = correlation.along(angle, point.lag).unwrap();
+                assert_relative_eq!(found.value, point.value, max_relative = 1e-12);
+                assert_eq!(found.pairs, point.pairs);
+            }
+        }
+        // No pair is less than sqrt(2) spacings apart along the diagonal.
+        assert_eq!(correlation.along(45.0, 1e-6), None);
+        let lags = |n: usize| correlation.directions(&[0.0, 90.0], 10)[n].samples.len();
+        assert!(lags(0) > lags(1) && lags(1) > 8);
+    }
+
+    #[test]
+    fn a_sine_at_thirty_degrees_shows_its_direction_and_its_correlation() {
+        let (amplitude, wavelength, spacing) = (3e-6, 40e-6, [1e-6, 1.5e-6]);
+        let q = TAU / wavelength;
+        let (sin, cos) = 30_f64.to_radians().sin_cos();
+        let wave = |x: f64, y: f64| amplitude * (q * (x * cos + y * sin)).sin();
+        let correlation = ArealCorrelation::of(&map([400, 300], spacing, wave), None).unwrap();
+        for direction in correlation.directions(&[0.0, 30.0, 75.0, 120.0, 150.0], 5) {
+            let along = q * (direction.angle - 30.0).to_radians().cos();
+            for sample in direction.samples.iter().filter(|sample| sample.lag < 200e-6) {
+                // D^2 (1 - cos q s) on an endless surface; here some ten waves of which the rest does not average out.
+                let exact = amplitude.powi(2) * (1.0 - (along * sample.lag).cos());
+                assert_relative_eq!(sample.value, exact, epsilon = 0.03 * amplitude.powi(2));
+            }
+        }
+        let anisotropy = correlation.anisotropy().unwrap();
+        assert_relative_eq!(anisotropy.run, 120.0, epsilon = 0.5);
+        // cos(q s) = 1/2 - to the variance D^2 / 2 - at a sixth of the wavelength.
+        assert_relative_eq!(anisotropy.length_across, wavelength / 6.0, max_relative = 0.01);
+        assert!(anisotropy.aspect < 0.1, "{anisotropy:?}");
+        assert_relative_eq!(anisotropy.gradient_run, 120.0, epsilon = 0.1);
+        assert!(anisotropy.gradient_ratio < 0.05, "{anisotropy:?}");
+        let short = correlation.anisotropy_by_lag(5)[0];
+        assert_relative_eq!(short.run, 120.0, epsilon = 1.0);
+        assert!(short.ratio < 0.05);
+    }
+
+    #[test]
+    fn stretched_waves_have_the_aspect_they_were_stretched_by() {
+        // C(q) of Gaussian form, correlation lengths 12 and 6 points along 25 and 115 degrees.
+        let (sin, cos) = 25_f64.to_radians().sin_cos();
+        let density = |qx: f64, qy: f64| {
+            let (along, across) = (qx * cos + qy * sin, qy * cos - qx * sin);
+            (-(12.0 * along).powi(2) / 2.0 - (6.0 * across).powi(2) / 2.0).exp()
+        };
+        let map = gaussian(512, [1.0, 1.0], density, true, 2);
+        let anisotropy = ArealCorrelation::of(&map, Some(100.0)).unwrap().anisotropy().unwrap();
+        // Some 3000 areas of correlation: lengths to a few per cent, the direction to a degree or two.
+        assert_relative_eq!(anisotropy.run, 25.0, epsilon = 3.0);
+        assert_relative_eq!(anisotropy.aspect, 0.5, max_relative = 0.06);
+        assert_relative_eq!(anisotropy.gradient_run, 25.0, epsilon = 3.0);
+        assert_relative_eq!(anisotropy.gradient_ratio, 0.5, max_relative = 0.06);
+        // ACF = exp(-s^2 / (2 6^2)) = 1/2.
+        let half = 6.0 * (2.0 * 2_f64.ln()).sqrt();
+        assert_relative_eq!(anisotropy.length_across, half, max_relative = 0.06);
+    }
+
+    #[test]
+    fn what_has_no_correlation_is_an_error() {
+        let of = |map: HeightMap| ArealCorrelation::of(&map, None).unwrap_err();
+        let flat = map([5, 5], [1.0; 2], |_, _| 0.1);
+        assert!(matches!(of(flat.clone()), ArealError::Flat { .. }));
+        assert!(matches!(of(map([5, 1], [1.0; 2], |x, _| x)), ArealError::TooSmall { .. }));
+        let missing = HeightMap { heights: vec![f64::NAN; 25], ..flat };
+        assert!(matches!(of(missing), ArealError::TooFewHeights { valid: 0, .. }));
+    }
+}

@@ -63,15 +63,19 @@ impl AbbottCurve {
         self.heights[i] + rest * (next - self.heights[i])
     }
 
-    /// Material ratio at a height: 0 above all points, 1 below all.
+    /// Material ratio at a height: 0 above all points, 1 below all; of a level part that of its upper end.
     pub fn ratio(&self, height: f64) -> f64 {
-        let below = self.heights.partition_point(|&z| z > height);
-        if below == 0 {
+        self.ratio_after(self.heights.partition_point(|&z| z > height), height)
+    }
+
+    /// Material ratio at a height between the points before and after a number of them.
+    fn ratio_after(&self, above: usize, height: f64) -> f64 {
+        if above == 0 {
             return 0.0;
         }
-        let Some(next) = self.heights.get(below) else { return 1.0 };
-        let last = self.heights[below - 1];
-        ((below - 1) as f64 + (last - height) / (last - next) + 0.5) / self.heights.len() as f64
+        let Some(next) = self.heights.get(above) else { return 1.0 };
+        let last = self.heights[above - 1];
+        ((above - 1) as f64 + (last - height) / (last - next) + 0.5) / self.heights.len() as f64
     }
 
     /// Material in m³/m² above the height at a material ratio.
@@ -87,7 +91,9 @@ impl AbbottCurve {
     /// Parameters of the curve; none for fewer than five heights.
     pub fn parameters(&self) -> Option<FunctionalParameters> {
         let [top, bottom] = self.core()?;
-        let (smr1, smr2) = (self.ratio(top), self.ratio(bottom));
+        let smr1 = self.ratio(top);
+        // A level part belongs to the core: its lower end.
+        let smr2 = self.ratio_after(self.heights.partition_point(|&z| z >= bottom), bottom);
         let peaks = self.integral(smr1) - smr1 * top;
         let valleys = (1.0 - smr2) * bottom - (self.integral(1.0) - self.integral(smr2));
         let triangle = |area: f64, base: f64| if base > 0.0 { 2.0 * area / base } else { 0.0 };
@@ -113,16 +119,20 @@ impl AbbottCurve {
         if width < 2 {
             return None;
         }
-        let falls = self.heights.iter().zip(&self.heights[width..]).map(|(high, low)| high - low);
+        let lows = self.heights[width - 1..].iter();
         let (mut start, mut least) = (0, f64::INFINITY);
-        for (i, fall) in falls.enumerate() {
+        for (i, fall) in self.heights.iter().zip(lows).map(|(high, low)| high - low).enumerate() {
             if fall < least {
                 (start, least) = (i, fall);
             }
         }
-        let region = &self.heights[start..=start + width];
-        let middle = width as f64 / 2.0;
-        let mean = region.iter().sum::<f64>() / region.len() as f64;
+        let region = &self.heights[start..start + width];
+        if least == 0.0 {
+            // Of a level region the mean would be off by round-off, on either side of all its points.
+            return Some([region[0]; 2]);
+        }
+        let middle = (width - 1) as f64 / 2.0;
+        let mean = region.iter().sum::<f64>() / width as f64;
         let (mut products, mut squares) = (0.0, 0.0);
         for (i, z) in region.iter().enumerate() {
             let x = i as f64 - middle;
@@ -141,7 +151,7 @@ impl AbbottCurve {
             return ratio * first;
         }
         let (i, rest) = self.position(ratio);
-        let half = (self.height(ratio) + self.heights[i]) / 2.0;
+        let half = f64::midpoint(self.height(ratio), self.heights[i]);
         (self.heights[..=i].iter().sum::<f64>() - self.heights[i] / 2.0 + rest * half) / count
     }
 

@@ -177,7 +177,7 @@ impl LagPlane {
         let (mut low, mut high) = (0.0, 1.0);
         // Halving to round-off of a step.
         for _ in 0..50 {
-            let middle = (low + high) / 2.0;
+            let middle = f64::midpoint(low, high);
             match cubic([first, before, after, last], middle) * start > 0.0 {
                 true => low = middle,
                 false => high = middle,

@@ -17,6 +17,11 @@ mod gradient;
 mod lags;
 mod transform;
 
+#[cfg(test)]
+mod reference;
+#[cfg(test)]
+mod test_maps;
+
 pub use correlation::ArealCorrelation;
 pub use error::ArealError;
 pub use parameters::ArealParameters;

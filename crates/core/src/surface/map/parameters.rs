@@ -124,3 +124,6 @@ impl Moments {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
