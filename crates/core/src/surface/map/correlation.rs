@@ -295,6 +295,23 @@ mod tests {
     }
 
     #[test]
+    fn between_the_lags_of_the_grid_the_correlation_is_that_of_a_finer_map() {
+        let density = |qx: f64, qy: f64| 1e-3 * (0.05_f64.hypot(qx.hypot(qy))).powf(-3.6);
+        let fine = gaussian(512, [1.0, 1.0], density, true, 5);
+        let every_second = |n: usize| fine.heights[(n / 256) * 2 * 512 + (n % 256) * 2];
+        let heights = (0..256 * 256).map(every_second).collect();
+        let coarse = HeightMap { points: [256; 2], spacing: [2.0; 2], heights, name: "07".into() };
+        let [fine, coarse] = [fine, coarse].map(|map| ArealCorrelation::of(&map, None).unwrap());
+        for [k, l] in [[2, 1], [-3, 2], [5, 3], [7, 7], [-11, 20], [41, 3]] {
+            let point = fine.at([k, l]).unwrap();
+            let angle = (l as f64).atan2(k as f64).to_degrees();
+            let found = coarse.along(angle, point.lag).unwrap();
+            // A quarter of the pairs, and C of the surface is rough at short lags.
+            assert_relative_eq!(found.value, point.value, max_relative = 0.02);
+        }
+    }
+
+    #[test]
     fn what_has_no_correlation_is_an_error() {
         let of = |map: HeightMap| ArealCorrelation::of(&map, None).unwrap_err();
         let flat = map([5, 5], [1.0; 2], |_, _| 0.1);

@@ -23,7 +23,7 @@ pub enum ArealError {
     },
     /// Too few heights.
     #[error(
-        "map {map}: {valid} of its {points} points have heights, at least 2 are needed; leave the map out"
+        "map {map}: {valid} of its {points} points have heights, at least {least} are needed; leave the map out"
     )]
     TooFewHeights {
         /// Name of the map.
@@ -32,6 +32,8 @@ pub enum ArealError {
         valid: usize,
         /// Number of points.
         points: usize,
+        /// Heights needed.
+        least: usize,
     },
     /// No gradient: missing points lie between all others.
     #[error(
@@ -88,7 +90,8 @@ pub(super) fn mean_height(map: &HeightMap, least: usize) -> Result<f64, ArealErr
         valid += 1;
     }
     if valid < 2 {
-        return Err(ArealError::TooFewHeights { map: map.name.clone(), valid, points: nx * ny });
+        let (map, points) = (map.name.clone(), nx * ny);
+        return Err(ArealError::TooFewHeights { map, valid, points, least: 2 });
     }
     if lowest == highest {
         return Err(ArealError::Flat { map: map.name.clone(), height: lowest });

@@ -88,7 +88,7 @@ impl AbbottCurve {
         (1.0 - ratio) * self.height(ratio) - (self.integral(1.0) - self.integral(ratio))
     }
 
-    /// Parameters of the curve; none for fewer than five heights.
+    /// Parameters of the curve; none for fewer than four heights.
     pub fn parameters(&self) -> Option<FunctionalParameters> {
         let [top, bottom] = self.core()?;
         let smr1 = self.ratio(top);

@@ -62,7 +62,7 @@ impl ArealParameters {
     /// Std missing points have the mean height and the map is weighted by Hann's window along each direction.
     ///
     /// # Errors
-    /// Fewer than 4 points in a direction, fewer than two heights, all heights equal, no neighbours with heights.
+    /// Fewer than 4 points in a direction, fewer than four heights, all heights equal, no neighbours with heights.
     pub fn of(map: &HeightMap) -> Result<Self, ArealError> {
         let mean = mean_height(map, LEAST)?;
         let gradients = Gradients::of(map)?;
@@ -73,6 +73,7 @@ impl ArealParameters {
             map: map.name.clone(),
             valid: map.heights.len() - map.missing(),
             points: map.heights.len(),
+            least: 4,
         };
         let functional =
             AbbottCurve::of(heights).and_then(|c| c.parameters()).ok_or_else(too_few)?;

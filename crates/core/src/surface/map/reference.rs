@@ -159,36 +159,3 @@ fn the_texture_direction_is_that_of_the_second_implementation() {
         assert!((theirs - 0.3..theirs + 0.8).contains(&std), "{std}");
     }
 }
-
-#[test]
-#[ignore = "timing of a large map, by hand and optimised"]
-fn seconds_for_a_large_map() {
-    let n: usize = std::env::var("N").map_or(2048, |n| n.parse().unwrap());
-    let mut large = super::test_maps::noise([n; 2], [1e-5; 2], 1);
-    if std::env::var("GAPS").is_ok() {
-        large = super::test_maps::with_gaps(large, 5);
-    }
-    let time = std::time::Instant::now();
-    let p = ArealParameters::of(&large);
-    println!("parameters {:?} {:?}", time.elapsed(), p.unwrap().sal);
-    let time = std::time::Instant::now();
-    let c = super::ArealCorrelation::of(&large, None).unwrap();
-    println!("correlation {:?}", time.elapsed());
-    let time = std::time::Instant::now();
-    let angles: Vec<f64> = (0..18).map(|n| f64::from(n) * 10.0).collect();
-    let d = c.directions(&angles, 20);
-    println!("directions {:?} {}", time.elapsed(), d.len());
-    println!("anisotropy {:?} {:?}", c.anisotropy(), time.elapsed());
-    println!("by lag {:?} {:?}", c.anisotropy_by_lag(10).len(), time.elapsed());
-    if large.missing() == 0 {
-        let time = std::time::Instant::now();
-        let s = super::ArealSpectrum::of(&large, crate::surface::spectrum::Window::Hann).unwrap();
-        println!("spectrum {:?}", time.elapsed());
-        let time = std::time::Instant::now();
-        println!("radial {} {:?}", s.radial(20).len(), time.elapsed());
-        println!("sectors {} {:?}", s.sectors([0.0, 1e9]).len(), time.elapsed());
-        println!("rows {} {:?}", s.rows().density.len(), time.elapsed());
-    }
-    let status = std::fs::read_to_string("/proc/self/status").unwrap();
-    println!("{}", status.lines().find(|l| l.starts_with("VmHWM")).unwrap());
-}

@@ -72,9 +72,10 @@ pub(super) fn transform_columns<T: Send>(
     );
 }
 
-/// Real rows of `length` values from columns whose inverse transform along `y` is done: `columns` holds, for each of the
-/// `length / 2 + 1` wavenumbers along `x`, `stride` values of which `row` counts from `offset`. `finish(line, kept)` gets
-/// the values, not normalised, and fills the part of `output` that belongs to the row.
+/// Inverse transforms along `x` of columns that are transformed back along `y`: real rows of `length` values, not
+/// normalised. `columns` holds `stride` values for each of the `length / 2 + 1` wavenumbers along `x`; the rows are made
+/// of those from `offset` on, one row after the other. `finish(row, kept)` fills the part of `output`, `kept` long, that
+/// belongs to the row.
 pub(super) fn invert_rows(
     columns: &[Complex64],
     [offset, stride]: [usize; 2],

@@ -126,6 +126,9 @@ fn what_has_no_parameters_is_an_error() {
     assert!(matches!(error(&map([0, 0], [1.0; 2], |x, _| x)), ArealError::TooSmall { .. }));
     let missing = HeightMap { heights: vec![f64::NAN; 25], ..flat.clone() };
     assert!(matches!(error(&missing), ArealError::TooFewHeights { valid: 0, points: 25, .. }));
+    let corner = |n: usize| if [0, 1, 5].contains(&n) { n as f64 } else { f64::NAN };
+    let corner = HeightMap { heights: (0..25).map(corner).collect(), ..flat.clone() };
+    assert!(matches!(error(&corner), ArealError::TooFewHeights { valid: 3, least: 4, .. }));
     let rows = |n: usize| if (n / 5).is_multiple_of(2) { n as f64 } else { f64::NAN };
     let rows = HeightMap { heights: (0..25).map(rows).collect(), ..flat };
     assert!(matches!(error(&rows), ArealError::NoNeighbours { .. }));
