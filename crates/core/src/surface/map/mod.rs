@@ -4,17 +4,39 @@
 //! |---|---|
 //! | [`mod@condition`] | faults, resampling, windows and form of a map, in one call |
 //! | [`faults`], [`form`], [`gaps`] | spikes and jumped rows, polynomial surfaces, missing points to be filled |
+//! | [`parameters`], [`functional`] | parameters of ISO 25178-2, those of the material ratio curve |
+//! | [`correlation`] | height-difference correlation along directions, anisotropy |
+//! | [`spectrum`] | two-dimensional power spectrum |
+//! | [`error`] | maps that cannot be evaluated |
 //! | [`periodic`] | a map as a periodic surface without short waves |
 //! | [`phases`] | surfaces with the spectrum of a map or of lines, and other phases |
 
 pub mod condition;
+pub mod correlation;
+pub mod error;
 pub mod faults;
 pub mod form;
+pub mod functional;
 pub mod gaps;
+pub mod parameters;
 pub mod periodic;
 pub mod phases;
+pub mod spectrum;
 
+mod gradient;
+mod lags;
+mod transform;
+
+#[cfg(test)]
+mod reference;
+#[cfg(test)]
+mod test_maps;
+
+pub use correlation::ArealCorrelation;
+pub use error::ArealError;
+pub use parameters::ArealParameters;
 pub use periodic::{PeriodicMap, PeriodicMapError};
+pub use spectrum::ArealSpectrum;
 
 /// Heights on a grid of equal spacing along each direction.
 #[derive(Debug, Clone, PartialEq)]
