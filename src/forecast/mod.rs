@@ -24,6 +24,7 @@ pub use multilevel::MultilevelForecast;
 pub use scales::{ScaleForecast, ScaleModel};
 
 use crate::artifact::{ArtifactError, RunView, SolveStore};
+use crate::contact::areal::memory_bytes;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::Interrupt;
 use crate::pipeline::{self, PipelineError, Selection};
@@ -36,7 +37,7 @@ use crate::stages::bem::{self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, Sol
 use crate::stages::ingest::{read_maps, read_windows};
 use crate::stages::micro::Parting;
 use crate::stages::realise::SurfaceKind;
-use crate::stages::realise::{ArealSurface, Surface, read_areal_surfaces, read_surfaces};
+use crate::stages::realise::{Surface, read_areal_surfaces, read_surfaces};
 use crate::stages::{Chain, Job};
 use crate::stages::{Stage, StageError, Watch};
 use crate::units::Units;
@@ -158,9 +159,11 @@ pub fn forecast(
     let busy = (tried / threads as f64).min(1.0);
     let half_space = bem_seconds * (total / tried * busy).max(1.0);
     stages.push(StageForecast { stage: stages::bem::STAGE, seconds: Some(half_space) });
+    let mut areal_megabytes = 0.0;
     if chain.has_areal_surfaces() {
-        let seconds = areal_seconds(&chain, &RunView::of(folder.path()), threads)?;
+        let (seconds, megabytes) = areal(&chain, &RunView::of(folder.path()), threads)?;
         stages.push(StageForecast { stage: stages::areal::STAGE, seconds: Some(seconds) });
+        areal_megabytes = megabytes;
     }
     let mut microscales = Vec::new();
     if let Some(parameters) = chain.micro {
@@ -190,7 +193,7 @@ pub fn forecast(
     let points = 2.0 * most as f64 * threads as f64;
     let half_space = (BYTES_PER_POINT * points).bytes_to_megabytes();
     let blocks = all_waves.iter().map(|curve| curve.megabytes_each).fold(0.0, f64::max);
-    let megabytes = BASE_MEGABYTES + half_space.max(blocks * threads as f64);
+    let megabytes = BASE_MEGABYTES + half_space.max(blocks * threads as f64).max(areal_megabytes);
     Ok(Forecast {
         curves,
         micro: microscales,
@@ -264,19 +267,22 @@ fn shortened(recipe: &Recipe) -> Recipe {
     trial
 }
 
-/// Expected wall time in s of the areal surfaces, from the grids of those of the first window.
-fn areal_seconds(chain: &Chain, view: &RunView, threads: usize) -> Result<f64, ForecastError> {
+/// Expected wall time in s and memory in MB of the areal surfaces, from the grids of those of the first window.
+fn areal(chain: &Chain, view: &RunView, threads: usize) -> Result<(f64, f64), ForecastError> {
     let sweep = areal::Sweep { areal: chain.areal.clone(), wanted: chain.bem.wanted() };
     let surfaces = read_areal_surfaces(view)?;
     let maps = if chain.has_maps() { read_maps(view)?.len().min(most_windows(chain)) } else { 0 };
     let curves = (chain.bem.speeds_mm_s.len() * chain.areal.angles_deg.len()) as f64;
-    let of_kind = |first: &ArealSurface| {
+    let (mut seconds, mut megabytes) = (0.0, 0.0_f64);
+    for first in surfaces.iter().filter(|surface| surface.realisation == 1) {
         let measured = first.kind.method.is_measured();
         let count = if measured { maps } else { chain.realise.areal_drawn() as usize };
-        count as f64 * curves * sweep.seconds(chain.areal.grid(first))
-    };
-    let firsts = surfaces.iter().filter(|surface| surface.realisation == 1);
-    Ok(firsts.map(of_kind).sum::<f64>() / threads as f64)
+        let points = chain.areal.grid(first);
+        seconds += count as f64 * curves * sweep.seconds(points) / threads as f64;
+        let bytes = memory_bytes(points[0], points[1]) as f64 * threads as f64;
+        megabytes = megabytes.max(bytes.bytes_to_megabytes());
+    }
+    Ok((seconds, megabytes))
 }
 
 fn most_windows(chain: &Chain) -> usize {

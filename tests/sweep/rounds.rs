@@ -49,6 +49,54 @@ columns_per_shortest_wavelength = 16
 pressure_ratio = 1.6
 "#;
 
+/// A small map, and the profiles of its rows.
+const MAPS: &str = r#"title = "Maps"
+
+[ingest]
+scans = ["road.sdf"]
+map_line_step = 16
+
+[ingest.maps]
+window_length_mm = [3.2, 3.2]
+
+[ingest.conditioning]
+window_length_mm = 3.2
+
+[approximate]
+waves = [3]
+shortest_wavelength_mm = 0.4
+
+[realise]
+methods = ["measured", "random-phase"]
+realisations = 3
+periodic = "blend"
+
+[bem]
+rubber = "rubber.toml"
+speeds_mm_s = [10.0]
+area_fractions = [0.05]
+points_per_shortest_wavelength = 16
+
+[areal]
+points_per_shortest_wavelength = 8
+
+[sweep]
+seeds = [1, 2]
+"#;
+
+#[test]
+fn areal_surfaces_are_spread_with_the_profiles() {
+    let campaign = campaign();
+    campaign.write("recipe.toml", MAPS);
+    let synth = "synth map --out road.sdf --length-mm 6.4 --rms-height-mm 0.05";
+    quietly(&campaign, synth).result();
+    let expected = alone(&campaign);
+    let plan = solved(&campaign, "out", 1);
+    assert_eq!(stages(&plan), ["areal", "bem"]);
+    quietly(&campaign, &format!("sweep collect {plan}")).result();
+    assert_eq!(tables(&campaign, "out"), expected);
+}
+
 #[test]
 fn microscales_and_finite_elements_come_after_the_half_space() {
     let campaign = campaign();

@@ -13,7 +13,7 @@ fn parseval_holds_for_even_and_odd_numbers_of_points() {
         let count = map.heights.len() as f64;
         let mean = map.heights.iter().sum::<f64>() / count;
         for window in WINDOWS {
-            let weights = points.map(|points| weights(window, points));
+            let weights = points.map(|points| window.weights(points));
             let weight = |n: usize| (weights[0][n % points[0]] * weights[1][n / points[0]]).powi(2);
             let squares =
                 map.heights.iter().enumerate().map(|(n, z)| weight(n) * (z - mean).powi(2));
@@ -76,7 +76,7 @@ fn the_rows_have_the_mean_of_their_periodograms() {
         let mean = map.heights.iter().sum::<f64>() / map.heights.len() as f64;
         for window in WINDOWS {
             let plan = SpectrumPlan::new(points[0]).unwrap();
-            let weights = weights(window, points[1]);
+            let weights = window.weights(points[1]);
             let mut expected = vec![0.0; points[0] / 2 + 1];
             for (row, weight) in map.heights.chunks_exact(points[0]).zip(&weights) {
                 let heights = row.iter().map(|z| z - mean).collect();
