@@ -15,10 +15,10 @@ use crate::requirement::InvalidRecipe;
 use crate::stages::StageError;
 use crate::stages::approximate::WAVES;
 use crate::stages::bem::Given;
-use crate::stages::ingest::read_windows;
+use crate::stages::ingest::{MAPS, read_maps, read_windows};
 use crate::stages::realise::{LONGEST_GAP, Method, SurfaceKind};
 use crate::stages::tables::{FRICTION, FrictionRow};
-use crate::surface::LineScan;
+use crate::surface::{HeightMap, LineScan};
 use crate::units::Units;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -151,13 +151,15 @@ pub fn study(
 /// Waves that a window holds at least, to be a profile of them.
 const WAVES_IN_WINDOW: f64 = 4.0;
 
-/// Length of the shortest window in mm.
+/// Length of the shortest window of a line or side of a map in mm.
 fn shortest_window_mm(view: &RunView) -> Result<f64, CutoffError> {
     let windows = read_windows(view)?;
+    let maps = if view.has(MAPS)? { read_maps(view)? } else { Vec::new() };
+    let sides = maps.iter().flat_map(HeightMap::lengths).fold(f64::INFINITY, f64::min);
     let length = |window: &LineScan| {
         window.heights.iter().filter(|z| !z.is_nan()).count() as f64 * window.spacing
     };
-    Ok(windows.iter().map(length).fold(f64::INFINITY, f64::min).m_to_mm())
+    Ok(windows.iter().map(length).fold(sides, f64::min).m_to_mm())
 }
 
 /// The folder of a run.
@@ -195,6 +197,7 @@ fn longer(recipe: &Recipe, octave: u32, base_mm: Option<f64>) -> Option<Recipe> 
         bem.estimate_scan_error = false;
         bem.field_area_fractions.clear();
     }
+    variant.areal.field_area_fractions.clear();
     let factor = 2.0_f64.powi(octave as i32);
     let approximate = variant.approximate.as_mut()?;
     let fewer = |waves: &mut Vec<u32>| {
@@ -210,7 +213,7 @@ fn longer(recipe: &Recipe, octave: u32, base_mm: Option<f64>) -> Option<Recipe> 
         if realise.waves.is_empty() {
             realise.methods.retain(|method| *method != Method::Sines);
         }
-        if realise.has_windows() {
+        if realise.names_windows() || realise.is_isotropic() {
             let own_mm = realise.shortest_wavelength_mm.unwrap_or(base_mm);
             realise.shortest_wavelength_mm = Some(factor * own_mm);
             // The same windows at all shortest wavelengths.
