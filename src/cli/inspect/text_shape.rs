@@ -92,13 +92,10 @@ impl TextShape {
         };
         let shape = text_shape::TextShape::of(&bytes)
             .ok_or_else(|| problem_of_workbook(path, &bytes, what))?;
-        let recipe_section = match (shape.is_matrix(), shape.map) {
-            (true, _) => String::new(),
-            (false, Some(_)) => {
-                format!("[ingest]\nmap_lines = \"rows\"\n\n{}", shape.recipe_section())
-            }
-            (false, None) => shape.recipe_section(),
-        };
+        let mut recipe_section = shape.recipe_section();
+        if shape.is_map() {
+            recipe_section.insert_str(0, "[ingest]\nmap_lines = \"rows\"\n\n");
+        }
         let (read, unread) = match statistics(path, &bytes, &shape) {
             Ok(statistics) => (Some(statistics), None),
             Err(reason) => (None, Some(reason)),
@@ -201,9 +198,6 @@ impl TextShape {
             ("stated units", self.stated.join("\n")),
             ("with the proposal", numbers),
         ]);
-        if self.recipe_section.is_empty() {
-            return lines;
-        }
         format!("{lines}\na description for the recipe, to be checked:\n\n{}", self.recipe_section)
     }
 }
@@ -214,9 +208,6 @@ fn statistics(
     bytes: &[u8],
     shape: &text_shape::TextShape,
 ) -> Result<Statistics, String> {
-    if shape.is_matrix() {
-        return Err(matrix_problem(shape));
-    }
     if let Some(cell) = &shape.thousands {
         return Err(format!(
             "not read: `{cell}` separates thousands, which no description can tell from a decimal \
@@ -245,15 +236,6 @@ fn of_map(map: &ScanFile) -> Statistics {
     };
     let (missing, mean_m, std_m) = (map.missing(), map.mean(), map.standard_deviation());
     Statistics { missing, shape, spacing_m, spacing_y_m, mean_m, std_m }
-}
-
-/// What to do with the rows of a height map without spacing and unit.
-pub(in crate::cli) fn matrix_problem(shape: &text_shape::TextShape) -> String {
-    format!(
-        "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, SDF, as text with \
-         columns x, y and z or, from Gwyddion, as text with its comment lines",
-        shape.columns.len()
-    )
 }
 
 /// Why no numbers were found in a file: for a workbook that cannot be opened, the reason.

@@ -258,7 +258,7 @@ fn a_description_that_contradicts_the_names_of_the_columns_is_told() {
         ["the column `Distance (mm)` states mm, the description x_unit = \"um\""]
     );
     let by_number =
-        TextFormat { z_column: Column::Number(2), z_unit: Some(LengthUnit::M), ..format };
+        TextFormat { z_column: Some(Column::Number(2)), z_unit: Some(LengthUnit::M), ..format };
     assert_eq!(found.contradictions(&by_number).len(), 1);
     // A number among columns that another separator makes is another column.
     let other = TextFormat { separator: Separator::Comma, ..by_number };
