@@ -99,7 +99,7 @@ pub(in crate::cli) struct ScanOptions {
 
 impl ScanOptions {
     /// The options that are given and differ from their defaults.
-    fn given(&self) -> Vec<&'static str> {
+    pub(in crate::cli) fn given(&self) -> Vec<&'static str> {
         let default_missing = ["", "NaN", "BAD"];
         [
             ("--sheet", self.sheet.is_some()),

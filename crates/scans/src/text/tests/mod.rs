@@ -1,6 +1,7 @@
 //! Good files and real files; those that cannot be read are in `bad_files`.
 
 mod bad_files;
+mod matrix;
 
 use super::*;
 use crate::description::{Column, DecimalMark, LengthUnit, Separator};
