@@ -171,6 +171,7 @@ fn rows_of_heights_are_proposed_described_and_solved() {
     let proposed = asperity_at("inspect {}/depths.txt", folder.path()).result();
     for part in [
         "the file does not state x_spacing_um, z_unit",
+        "48 heights on each line, a row of a height map",
         "map_lines = \"rows\"",
         "skip_until = \"[Data]\"",
         "decimal_mark = \",\"",

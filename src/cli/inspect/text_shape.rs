@@ -38,6 +38,8 @@ pub(super) struct TextShape {
     #[serde(skip_serializing_if = "Option::is_none")]
     stop_at: Option<String>,
     header: bool,
+    /// Whether the lines seem to be rows of heights.
+    matrix: bool,
     columns: Vec<Column>,
     points: usize,
     /// What is read with the proposed description; absent if it cannot be read.
@@ -92,6 +94,7 @@ impl TextShape {
         };
         let shape = text_shape::TextShape::of(&bytes)
             .ok_or_else(|| problem_of_workbook(path, &bytes, what))?;
+        let matrix = shape.is_matrix();
         let mut recipe_section = shape.recipe_section();
         if shape.is_map() {
             recipe_section.insert_str(0, "[ingest]\nmap_lines = \"rows\"\n\n");
@@ -117,6 +120,7 @@ impl TextShape {
             skip_until: shape.skip_until,
             stop_at: shape.stop_at,
             header: shape.header,
+            matrix,
             columns: shape.columns.into_iter().map(column).collect(),
             points: shape.rows,
             read,
@@ -127,11 +131,10 @@ impl TextShape {
         })
     }
 
-    pub(super) fn text(&self) -> String {
-        let mark = match self.decimal_mark {
-            DecimalMark::Point => "point",
-            DecimalMark::Comma => "comma",
-        };
+    fn columns_text(&self) -> String {
+        if self.matrix {
+            return format!("{} heights on each line, a row of a height map", self.columns.len());
+        }
         let column = |(index, column): (usize, &Column)| {
             let unit = match column.unit {
                 Some(unit) => format!("{unit:?}").to_lowercase(),
@@ -145,6 +148,14 @@ impl TextShape {
         if self.columns.len() > MOST_COLUMNS {
             columns.push(format!("... {} in all", self.columns.len()));
         }
+        columns.join("\n")
+    }
+
+    pub(super) fn text(&self) -> String {
+        let mark = match self.decimal_mark {
+            DecimalMark::Point => "point",
+            DecimalMark::Comma => "comma",
+        };
         let before = match &self.skip_until {
             Some(marker) => format!("{} lines, the last is `{marker}`", self.skip_lines),
             None => format!("{} lines to skip", self.skip_lines),
@@ -185,7 +196,7 @@ impl TextShape {
             ("decimal mark", mark.into()),
             ("before the columns", before),
             ("column names", if self.header { "yes" } else { "no" }.into()),
-            ("columns", columns.join("\n")),
+            ("columns", self.columns_text()),
             ("lines of points", points),
             (
                 "missing marks",

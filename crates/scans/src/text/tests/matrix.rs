@@ -129,7 +129,7 @@ fn a_matrix_that_is_no_map_says_why() {
     fails("", &matrix(""), "map: the file is empty");
     fails("BAD;BAD\nBAD;BAD\n", &matrix(""), "map: all 4 heights are missing");
     let absurd = "1;2\n3;-9999999\n";
-    fails(absurd, &matrix(""), "map: heights from -9.999999 m to 3e-6 m are not");
+    fails(absurd, &matrix(""), "map: heights from -9.999999 m to 0.000003 m are not");
     assert_eq!(um(&read(absurd, &matrix("missing = ['-9999999']"))), [1.0, 2.0, 3.0, -1.0]);
     fails("1;2\n3;4\n", &matrix("y_spacing_um = 1e6"), "map: points 1000 mm apart are not a scan");
     let wide = TextFormat { x_spacing_um: Some(1e-4), ..matrix("y_spacing_um = 1") };
@@ -187,4 +187,19 @@ fn columns_are_required_of_all_other_texts() {
     assert!(!toml::to_string(&simple("")).unwrap().contains("matrix"));
     let unset = TextFormat { z_column: None, ..simple("") }.validate().unwrap_err().to_string();
     assert!(unset.contains("`z_column` of its description is not set"), "{unset}");
+}
+
+proptest::proptest! {
+    #[test]
+    fn any_bytes_give_a_map_or_an_error(bytes: Vec<u8>, text in "[0-9;\t .\n\r\"Na-]{0,60}") {
+        for extra in ["", "missing = []", "separator = 'whitespace'", "separator = 'tab'"] {
+            for input in [&bytes[..], text.as_bytes()] {
+                if let Ok(Described::Map(map)) = parse_described("a", input, &matrix(extra)) {
+                    let Grid::Map { columns, rows, .. } = map.grid else { panic!("{:?}", map.grid) };
+                    proptest::prop_assert!(columns > 1 && rows > 1);
+                    proptest::prop_assert_eq!(map.heights.len(), columns * rows);
+                }
+            }
+        }
+    }
 }
