@@ -134,13 +134,21 @@ fn all_scans_are_looked_at() {
     ] {
         assert!(made.stderr.contains(part), "{part}: {}", made.stderr);
     }
-    // Rows of numbers that state no spacing are no scan.
+    // Rows of numbers are a map, whose spacing is left open.
     let matrix =
         (0..9).map(|i| format!("{} 3 1 4 {}\n", (i * 5) % 7, (i * 7) % 5)).collect::<String>();
     fs::write(folder.path().join("matrix.txt"), matrix).unwrap();
-    let error = within(folder.path(), &["init", "third", "--scans", "matrix.txt"]).error(2);
-    assert!(error.contains("height map without spacing and unit"), "{error}");
-    assert!(!folder.path().join("third").exists());
+    let made = Outcome::of(binary().current_dir(folder.path()).args([
+        "init",
+        "third",
+        "--scans",
+        "matrix.txt",
+    ]));
+    assert!(made.stderr.contains("does not state x_spacing_um, z_unit"), "{}", made.stderr);
+    let recipe = fs::read_to_string(folder.path().join("third/recipe.toml")).unwrap();
+    for part in ["map_lines = \"rows\"", "matrix = true\n# x_spacing_um = ?"] {
+        assert!(recipe.contains(part), "{part}: {recipe}");
+    }
 }
 
 #[test]

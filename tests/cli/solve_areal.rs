@@ -157,6 +157,65 @@ fn modes_and_maps_of_all_sorts_are_the_same_surface() {
     approx::assert_relative_eq!(mean, 0.02, max_relative = 1e-9);
 }
 
+/// A matrix that `inspect` describes and that options read.
+#[test]
+fn rows_of_heights_are_proposed_described_and_solved() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = String::from("Sample 7\n[Data]\n");
+    for row in heights() {
+        let cells: Vec<String> =
+            row.iter().map(|z| format!("{:.9}", -z).replace('.', ",")).collect();
+        text += &(cells.join(";") + ";\n");
+    }
+    fs::write(folder.path().join("depths.txt"), text).unwrap();
+    let proposed = asperity_at("inspect {}/depths.txt", folder.path()).result();
+    for part in [
+        "the file does not state x_spacing_um, z_unit",
+        "48 heights on each line, a row of a height map",
+        "map_lines = \"rows\"",
+        "skip_until = \"[Data]\"",
+        "decimal_mark = \",\"",
+        "matrix = true\n# x_spacing_um = ?",
+    ] {
+        assert!(proposed.contains(part), "{part}: {proposed}");
+    }
+    let described = "--matrix --separator semicolon --decimal-mark , --skip-until [Data] --x-spacing-um 25 --y-spacing-um 20 --z-unit um --invert-z";
+    let map = asperity_at(&format!("inspect {{}}/depths.txt {described} --json"), folder.path());
+    let map = map.json();
+    assert_eq!((&map["kind"], &map["shape"]), (&"map".into(), &serde_json::json!([32, 48])));
+    assert_eq!((number(&map, "spacing_m"), number(&map, "spacing_y_m")), (25e-6, 20e-6));
+    // An x3p file states all that, and areal reads either.
+    let convert = format!("convert {{}}/depths.txt --to {{}}/map.x3p {described}");
+    asperity_at(&convert, folder.path()).result();
+    let load = "--speed 10 --pressure 0.02 --quiet --json";
+    let solve = |map: &str| {
+        let result = asperity_at(&format!("solve areal --map {{}}/{map} {load}"), folder.path());
+        number(&result.json(), "friction_coefficient")
+    };
+    let of_text = solve(&format!("depths.txt {described}"));
+    approx::assert_relative_eq!(of_text, solve("map.x3p"), max_relative = 1e-9);
+    for (arguments, part) in [
+        ("inspect {}/depths.txt --matrix --separator ;", "--x-spacing-um, --z-unit"),
+        (
+            "inspect {}/depths.txt --matrix --separator ; --x-spacing-um 1 --z-unit um --z-column 1",
+            "the key `z_column` of its description does not go with matrix = true",
+        ),
+        (
+            "solve areal --map {}/depths.txt --matrix --separator ; --x-spacing-um 1 --z-unit um --map-unit um --speed 10 --pressure 1",
+            "leave --map-unit out",
+        ),
+        ("solve areal --map {}/map.x3p --matrix --speed 10 --pressure 1", "leave out --matrix"),
+        (
+            "solve areal --size-mm 1 --mode 1,0:0.01 --matrix --speed 10 --pressure 1",
+            "--matrix describes a --map",
+        ),
+    ] {
+        let outcome = asperity_at(arguments, folder.path());
+        assert_eq!(outcome.code, 2, "{arguments}: {}", outcome.stderr);
+        assert!(outcome.stderr.contains(part), "{arguments}: {}", outcome.stderr);
+    }
+}
+
 #[test]
 fn a_map_that_does_not_close_is_told_and_its_mirror_closes() {
     let folder = tempfile::tempdir().unwrap();

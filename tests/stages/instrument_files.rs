@@ -3,9 +3,10 @@
 use super::{Campaign, recipe, try_run};
 use asperity::artifact::{Manifest, RunView};
 use asperity::pipeline::Selection;
+use asperity::recipe::Recipe;
 use asperity::scans::file::{Grid, ScanFile, write_x3p};
 use asperity::stages;
-use asperity::stages::ingest::read_windows;
+use asperity::stages::ingest::{read_maps, read_windows};
 
 const ONLY_INGEST: Selection =
     Selection { only: Some(stages::ingest::STAGE), from: None, force: None };
@@ -159,4 +160,32 @@ fn a_text_without_a_description_is_an_error_that_says_how_to_get_one() {
     let error = try_run(&recipe(&campaign), &campaign.path("out"), ONLY_INGEST).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("track_0.txt") && text.contains("[ingest.text]"), "{text}");
+}
+
+#[test]
+fn a_matrix_of_heights_is_kept_as_a_map() {
+    let campaign = Campaign::new();
+    let mut text = String::from("exported\n");
+    for j in 0..40 {
+        let height = |i: i32| match (i, j) {
+            (17, 9) => "BAD".to_owned(),
+            _ => format!("{:.4}", 8.0 * (0.3 * f64::from(i) + 0.7 * f64::from(j)).sin()),
+        };
+        text += &((0..320).map(height).collect::<Vec<_>>().join(";") + "\n");
+    }
+    campaign.write("map.txt", &text);
+    let recipe_text = campaign.read("recipe.toml");
+    let section =
+        recipe_text.find("[ingest.text]").unwrap()..recipe_text.find("[ingest.cond").unwrap();
+    let described = "[ingest.text]\nmatrix = true\nseparator = \"semicolon\"\nskip_lines = 1\n\
+                     x_spacing_um = 25.0\ny_spacing_um = 50.0\nz_unit = \"um\"\n\n[ingest.maps]\n\n";
+    campaign.edit("recipe.toml", &recipe_text[section], described);
+    campaign.edit("recipe.toml", r#"["scans"]"#, "[\"map.txt\"]\nmap_line_step = 20");
+    assert_eq!(windows(&campaign), ["map_row_0000", "map_row_0020"]);
+    let maps = read_maps(&RunView::of(campaign.path("out"))).unwrap();
+    let [map] = &maps[..] else { panic!("{} maps", maps.len()) };
+    assert_eq!((map.name.as_str(), map.points, map.spacing), ("map", [320, 40], [25e-6, 50e-6]));
+    campaign.edit("recipe.toml", "matrix = true", "matrix = true\nx_column = 1");
+    let error = Recipe::read(&campaign.path("recipe.toml")).unwrap_err().to_string();
+    assert!(error.contains("x_column") && error.contains("matrix = true"), "{error}");
 }

@@ -2,15 +2,21 @@
 
 use crate::ScanProblem;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// How a text file, or a sheet of a workbook (.xlsx), holds a line scan or a height map: one line per
-/// point, positions and heights in columns.
+/// point, positions and heights in columns; or, with `matrix`, one line per row of a map.
 ///
 /// The file is read in this order: `encoding`, `skip_lines`, `skip_until`, column names, points
 /// up to `stop_at`, cuts. Cells of a sheet are cells already: `separator` and `encoding` do nothing there.
+// `remote` makes functions of what is derived; the traits below add what depends on other keys.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, remote = "Self")]
+#[schemars(extend("anyOf" = [
+    { "required": ["z_column"] },
+    { "required": ["matrix"], "properties": { "matrix": { "const": true } } },
+]))]
 pub struct TextFormat {
     /// Sheet of a workbook, by name or by number (the first is 1, which is the default).
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -35,16 +41,26 @@ pub struct TextFormat {
     /// `*****END*****`, which has to come.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop_at: Option<String>,
-    /// Whether a line of column names stands before the first point.
-    #[serde(default = "yes")]
-    pub header: bool,
+    /// True for a file of heights alone, one row of a height map on each line: the first line is the
+    /// first row, the first height of a line is at x = 0. `x_spacing_um` and `y_spacing_um` are its
+    /// spacings; it has no columns, so that keys of columns and their names cannot be set.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub matrix: bool,
+    /// Whether a line of column names stands before the first point; true if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("type" = "boolean", "default" = true))]
+    pub header: Option<bool>,
     /// Column of the positions, by name or by number (the first is 1). Either this or
     /// `x_spacing_um`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x_column: Option<Column>,
-    /// Distance between neighbouring lines in micrometres, for a file that holds heights only.
+    /// Distance between neighbouring lines in micrometres, for a file that holds heights only; of a
+    /// `matrix` the distance between neighbouring heights of a line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x_spacing_um: Option<f64>,
+    /// Distance between the lines of a `matrix` in micrometres; `x_spacing_um` if not set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_spacing_um: Option<f64>,
     /// Unit of the positions: `nm`, `um`, `mm` or `m`. Required with `x_column`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub x_unit: Option<LengthUnit>,
@@ -56,8 +72,9 @@ pub struct TextFormat {
     /// Unit of the positions across the lines: `nm`, `um`, `mm` or `m`. Required with `y_column`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub y_unit: Option<LengthUnit>,
-    /// Column of the heights, by name or by number (the first is 1).
-    pub z_column: Column,
+    /// Column of the heights, by name or by number (the first is 1). Required unless `matrix` is true.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub z_column: Option<Column>,
     /// Unit of the heights: `nm`, `um`, `mm` or `m`. Required.
     #[schemars(required)]
     pub z_unit: Option<LengthUnit>,
@@ -159,13 +176,52 @@ impl LengthUnit {
     }
 }
 
+impl<'de> Deserialize<'de> for TextFormat {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut format = Self::deserialize(deserializer)?;
+        if !format.matrix {
+            format.header.get_or_insert(true);
+            if format.z_column.is_none() {
+                return Err(D::Error::missing_field("z_column"));
+            }
+        }
+        Ok(format)
+    }
+}
+
+impl Serialize for TextFormat {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, serializer)
+    }
+}
+
 impl TextFormat {
+    /// Whether a line of column names stands before the first point.
+    pub fn has_header(&self) -> bool {
+        self.header.unwrap_or(!self.matrix)
+    }
+
+    /// Whether the file holds a height map and not a line.
+    pub fn is_map(&self) -> bool {
+        self.matrix || self.y_column.is_some()
+    }
+
+    /// The column of the heights, which a matrix does not have.
+    pub(super) fn height_column(&self) -> Result<&Column, ScanProblem> {
+        let reason = "is not set; name the column of the heights, or set matrix = true for a file of rows of heights";
+        self.z_column.as_ref().ok_or_else(|| description("z_column", reason))
+    }
+
     /// Checks what serde cannot: keys that depend on each other and ranges of values.
     ///
     /// # Errors
     /// [`ScanProblem::Description`] with the key and what to do.
     pub fn validate(&self) -> Result<(), ScanProblem> {
-        self.validate_columns()?;
+        if self.matrix {
+            self.validate_matrix()?;
+        } else {
+            self.validate_columns()?;
+        }
         if self.z_unit.is_none() {
             return Err(missing_unit("z_unit"));
         }
@@ -182,6 +238,44 @@ impl TextFormat {
             }
         }
         Ok(())
+    }
+
+    /// A matrix has spacings in place of columns.
+    fn validate_matrix(&self) -> Result<(), ScanProblem> {
+        let set = [
+            ("x_column", self.x_column.is_some()),
+            ("x_unit", self.x_unit.is_some()),
+            ("y_column", self.y_column.is_some()),
+            ("y_unit", self.y_unit.is_some()),
+            ("z_column", self.z_column.is_some()),
+        ];
+        if let Some((key, _)) = set.into_iter().find(|(_, set)| *set) {
+            return Err(description(
+                key,
+                "does not go with matrix = true, whose lines hold heights alone; leave one of them out",
+            ));
+        }
+        if self.header == Some(true) {
+            return Err(description(
+                "header",
+                "does not go with matrix = true, which has no column names; leave it out, and pass over lines before the \
+                 first row by skip_lines, skip_until or comment",
+            ));
+        }
+        let cuts = [("cut_start_mm", self.cut_start_mm), ("cut_end_mm", self.cut_end_mm)];
+        if let Some((key, length)) = cuts.into_iter().find(|(_, length)| *length != 0.0) {
+            let reason =
+                format!("is {length} mm, and is for line scans; leave it out with matrix = true");
+            return Err(description(key, reason));
+        }
+        if self.x_spacing_um.is_none() {
+            return Err(description(
+                "x_spacing_um",
+                "is not set; with matrix = true it is the distance between neighbouring heights of a line",
+            ));
+        }
+        let spacings = [("x_spacing_um", self.x_spacing_um), ("y_spacing_um", self.y_spacing_um)];
+        spacings.into_iter().try_for_each(|(key, spacing)| positive(key, spacing))
     }
 
     fn validate_map(&self) -> Result<(), ScanProblem> {
@@ -222,17 +316,15 @@ impl TextFormat {
                     "is not set; name the column of the positions, or set x_spacing_um for a file of heights only",
                 ));
             }
-            (None, Some(spacing)) if !(spacing > 0.0 && spacing.is_finite()) => {
-                return Err(description(
-                    "x_spacing_um",
-                    format!("is {spacing}; it must be positive"),
-                ));
-            }
             (Some(_), None) if self.x_unit.is_none() => return Err(missing_unit("x_unit")),
-            _ => {}
+            _ => positive("x_spacing_um", self.x_spacing_um)?,
+        }
+        if self.y_spacing_um.is_some() {
+            return Err(description("y_spacing_um", "goes with matrix = true, which is not set"));
         }
         self.validate_map()?;
-        let columns = [&self.x_column, &self.y_column, &Some(self.z_column.clone())];
+        let heights = self.height_column()?;
+        let columns = [&self.x_column, &self.y_column, &self.z_column];
         for (i, column) in columns.iter().enumerate() {
             if let Some(column) = column
                 && columns[..i].iter().any(|other| other.as_ref() == Some(column))
@@ -244,14 +336,14 @@ impl TextFormat {
         for (key, column) in [
             ("x_column", self.x_column.as_ref()),
             ("y_column", self.y_column.as_ref()),
-            ("z_column", Some(&self.z_column)),
+            ("z_column", Some(heights)),
             ("sheet", self.sheet.as_ref()),
         ] {
             match column {
                 Some(Column::Number(0)) => {
                     return Err(description(key, "is 0; the first is number 1"));
                 }
-                Some(Column::Name(name)) if !self.header && key != "sheet" => {
+                Some(Column::Name(name)) if !self.has_header() && key != "sheet" => {
                     let reason = format!("is the name `{name}`, but header = false; give a number");
                     return Err(description(key, reason));
                 }
@@ -279,6 +371,15 @@ impl TextFormat {
     }
 }
 
+fn positive(key: &'static str, spacing: Option<f64>) -> Result<(), ScanProblem> {
+    match spacing {
+        Some(spacing) if !(spacing > 0.0 && spacing.is_finite()) => {
+            Err(description(key, format!("is {spacing}; it must be positive")))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn missing_unit(key: &'static str) -> ScanProblem {
     description(key, "is not set; units are never guessed: choose one of nm, um, mm, m")
 }
@@ -287,8 +388,10 @@ fn description(key: &'static str, reason: impl Into<String>) -> ScanProblem {
     ScanProblem::Description { key, reason: reason.into() }
 }
 
-fn yes() -> bool {
-    true
+// The signature is that of serde.
+#[allow(clippy::trivially_copy_pass_by_ref)]
+fn is_false(flag: &bool) -> bool {
+    !*flag
 }
 
 /// The marks of a missing height that need not be listed.

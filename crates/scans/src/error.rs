@@ -151,6 +151,19 @@ pub enum ScanProblem {
         /// Cells that are needed.
         needed: usize,
     },
+    /// A row of a matrix has another number of heights than the first.
+    #[error(
+        "holds {numbers} numbers, and {expected} were expected, as on line {first}: all rows of a matrix are equally long; \
+         check `separator` and `decimal_mark`, and mark missing heights"
+    )]
+    UnequalRow {
+        /// Numbers of the line.
+        numbers: usize,
+        /// Numbers of the first row.
+        expected: usize,
+        /// Line of the first row.
+        first: usize,
+    },
     /// The last line is incomplete.
     #[error("the file breaks off in the middle of its last line; copy it again")]
     Truncated,

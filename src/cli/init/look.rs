@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::ladder::Extent;
 use crate::cli::CliError;
-use crate::cli::inspect::matrix_problem;
 use asperity::scans::file::{Grid, MapLines, ScanFile, parse_file};
 use asperity::scans::text_shape::TextShape;
 use asperity::scans::{Described, TextFormat, parse_described, read_bytes};
@@ -78,13 +77,10 @@ impl Look {
             let shape = TextShape::of(bytes).ok_or_else(|| {
                 format!("{} is text without lines of numbers, not a scan", file.display())
             })?;
-            if shape.is_matrix() {
-                return Err(format!("{}: {}", file.display(), matrix_problem(&shape)));
-            }
             let (name, section) = (name(file), shape.recipe_section());
             self.text_section =
                 format!("# Proposed from {name}: check it against the file.\n{section}");
-            if shape.map.is_some() {
+            if shape.is_map() {
                 self.map_lines = Some(MapLines::Rows);
             }
             if let Err(keys) = shape.format() {

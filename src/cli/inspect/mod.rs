@@ -43,7 +43,6 @@ use scan::Scan;
 pub(super) use scan::ScanOptions;
 use solve::Solve;
 use text_shape::TextShape;
-pub(super) use text_shape::matrix_problem;
 
 const EXAMPLES: &str = "\
 Examples:

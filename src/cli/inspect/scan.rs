@@ -40,9 +40,15 @@ pub(in crate::cli) struct ScanOptions {
     /// Unit of the positions: nm, um, mm or m.
     #[arg(long, value_name = "UNIT", value_parser = values::length_unit)]
     x_unit: Option<LengthUnit>,
-    /// Distance of neighbouring points in um, for a file of heights only, instead of --x-column.
+    /// Distance of neighbouring points in um, for a file of heights only, instead of --x-column; of a --matrix along its rows.
     #[arg(long, value_name = "UM", value_parser = values::positive, allow_negative_numbers = true)]
     x_spacing_um: Option<f64>,
+    /// Each line is a row of a height map: heights alone, at the distance --x-spacing-um, rows at --y-spacing-um.
+    #[arg(long)]
+    matrix: bool,
+    /// Distance of the rows of a --matrix in um; --x-spacing-um if not given.
+    #[arg(long, value_name = "UM", value_parser = values::positive, allow_negative_numbers = true)]
+    y_spacing_um: Option<f64>,
     /// Column of the positions across the lines of a height map, by name or number (the first is 1).
     #[arg(long, value_name = "COLUMN", value_parser = values::column)]
     y_column: Option<Column>,
@@ -93,7 +99,7 @@ pub(in crate::cli) struct ScanOptions {
 
 impl ScanOptions {
     /// The options that are given and differ from their defaults.
-    fn given(&self) -> Vec<&'static str> {
+    pub(in crate::cli) fn given(&self) -> Vec<&'static str> {
         let default_missing = ["", "NaN", "BAD"];
         [
             ("--sheet", self.sheet.is_some()),
@@ -101,6 +107,8 @@ impl ScanOptions {
             ("--x-column", self.x_column.is_some()),
             ("--x-unit", self.x_unit.is_some()),
             ("--x-spacing-um", self.x_spacing_um.is_some()),
+            ("--matrix", self.matrix),
+            ("--y-spacing-um", self.y_spacing_um.is_some()),
             ("--y-column", self.y_column.is_some()),
             ("--y-unit", self.y_unit.is_some()),
             ("--z-column", self.z_column.is_some()),
@@ -191,21 +199,20 @@ impl ScanOptions {
     /// # Errors
     /// The required options that are not given.
     pub(in crate::cli) fn format(&self) -> Result<TextFormat, String> {
-        let spaced = self.x_spacing_um.is_some();
+        let (spaced, matrix) = (self.x_spacing_um.is_some(), self.matrix);
         let needed: Vec<&str> = [
             ("--separator", self.separator.is_none()),
-            ("--y-unit", self.y_column.is_some() && self.y_unit.is_none()),
-            ("--x-column (or --x-spacing-um)", self.x_column.is_none() && !spaced),
-            ("--x-unit", self.x_unit.is_none() && !spaced),
-            ("--z-column", self.z_column.is_none()),
+            ("--y-unit", !matrix && self.y_column.is_some() && self.y_unit.is_none()),
+            ("--x-spacing-um", matrix && !spaced),
+            ("--x-column (or --x-spacing-um)", !matrix && self.x_column.is_none() && !spaced),
+            ("--x-unit", !matrix && self.x_unit.is_none() && !spaced),
+            ("--z-column", !matrix && self.z_column.is_none()),
             ("--z-unit", self.z_unit.is_none()),
         ]
         .into_iter()
         .filter_map(|(option, absent)| absent.then_some(option))
         .collect();
-        let (Some(separator), Some(z_column), true) =
-            (self.separator, self.z_column.clone(), needed.is_empty())
-        else {
+        let (Some(separator), true) = (self.separator, needed.is_empty()) else {
             return Err(needed.join(", "));
         };
         Ok(TextFormat {
@@ -216,13 +223,15 @@ impl ScanOptions {
             skip_lines: self.skip_lines,
             skip_until: self.skip_until.clone(),
             stop_at: self.stop_at.clone(),
-            header: !self.no_header,
+            matrix,
+            header: (!matrix || self.no_header).then_some(!self.no_header),
             x_column: self.x_column.clone(),
             x_spacing_um: self.x_spacing_um,
+            y_spacing_um: self.y_spacing_um,
             x_unit: self.x_unit,
             y_column: self.y_column.clone(),
             y_unit: self.y_unit,
-            z_column,
+            z_column: self.z_column.clone(),
             z_unit: self.z_unit,
             invert_z: self.invert_z,
             missing: self.missing.clone(),

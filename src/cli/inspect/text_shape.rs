@@ -38,6 +38,8 @@ pub(super) struct TextShape {
     #[serde(skip_serializing_if = "Option::is_none")]
     stop_at: Option<String>,
     header: bool,
+    /// Whether the lines seem to be rows of heights.
+    matrix: bool,
     columns: Vec<Column>,
     points: usize,
     /// What is read with the proposed description; absent if it cannot be read.
@@ -92,13 +94,11 @@ impl TextShape {
         };
         let shape = text_shape::TextShape::of(&bytes)
             .ok_or_else(|| problem_of_workbook(path, &bytes, what))?;
-        let recipe_section = match (shape.is_matrix(), shape.map) {
-            (true, _) => String::new(),
-            (false, Some(_)) => {
-                format!("[ingest]\nmap_lines = \"rows\"\n\n{}", shape.recipe_section())
-            }
-            (false, None) => shape.recipe_section(),
-        };
+        let matrix = shape.is_matrix();
+        let mut recipe_section = shape.recipe_section();
+        if shape.is_map() {
+            recipe_section.insert_str(0, "[ingest]\nmap_lines = \"rows\"\n\n");
+        }
         let (read, unread) = match statistics(path, &bytes, &shape) {
             Ok(statistics) => (Some(statistics), None),
             Err(reason) => (None, Some(reason)),
@@ -120,6 +120,7 @@ impl TextShape {
             skip_until: shape.skip_until,
             stop_at: shape.stop_at,
             header: shape.header,
+            matrix,
             columns: shape.columns.into_iter().map(column).collect(),
             points: shape.rows,
             read,
@@ -130,11 +131,10 @@ impl TextShape {
         })
     }
 
-    pub(super) fn text(&self) -> String {
-        let mark = match self.decimal_mark {
-            DecimalMark::Point => "point",
-            DecimalMark::Comma => "comma",
-        };
+    fn columns_text(&self) -> String {
+        if self.matrix {
+            return format!("{} heights on each line, a row of a height map", self.columns.len());
+        }
         let column = |(index, column): (usize, &Column)| {
             let unit = match column.unit {
                 Some(unit) => format!("{unit:?}").to_lowercase(),
@@ -148,6 +148,14 @@ impl TextShape {
         if self.columns.len() > MOST_COLUMNS {
             columns.push(format!("... {} in all", self.columns.len()));
         }
+        columns.join("\n")
+    }
+
+    pub(super) fn text(&self) -> String {
+        let mark = match self.decimal_mark {
+            DecimalMark::Point => "point",
+            DecimalMark::Comma => "comma",
+        };
         let before = match &self.skip_until {
             Some(marker) => format!("{} lines, the last is `{marker}`", self.skip_lines),
             None => format!("{} lines to skip", self.skip_lines),
@@ -188,7 +196,7 @@ impl TextShape {
             ("decimal mark", mark.into()),
             ("before the columns", before),
             ("column names", if self.header { "yes" } else { "no" }.into()),
-            ("columns", columns.join("\n")),
+            ("columns", self.columns_text()),
             ("lines of points", points),
             (
                 "missing marks",
@@ -201,9 +209,6 @@ impl TextShape {
             ("stated units", self.stated.join("\n")),
             ("with the proposal", numbers),
         ]);
-        if self.recipe_section.is_empty() {
-            return lines;
-        }
         format!("{lines}\na description for the recipe, to be checked:\n\n{}", self.recipe_section)
     }
 }
@@ -214,9 +219,6 @@ fn statistics(
     bytes: &[u8],
     shape: &text_shape::TextShape,
 ) -> Result<Statistics, String> {
-    if shape.is_matrix() {
-        return Err(matrix_problem(shape));
-    }
     if let Some(cell) = &shape.thousands {
         return Err(format!(
             "not read: `{cell}` separates thousands, which no description can tell from a decimal \
@@ -245,15 +247,6 @@ fn of_map(map: &ScanFile) -> Statistics {
     };
     let (missing, mean_m, std_m) = (map.missing(), map.mean(), map.standard_deviation());
     Statistics { missing, shape, spacing_m, spacing_y_m, mean_m, std_m }
-}
-
-/// What to do with the rows of a height map without spacing and unit.
-pub(in crate::cli) fn matrix_problem(shape: &text_shape::TextShape) -> String {
-    format!(
-        "not read: {} numbers on a line are a height map without spacing and unit; export it as X3P, SDF, as text with \
-         columns x, y and z or, from Gwyddion, as text with its comment lines",
-        shape.columns.len()
-    )
 }
 
 /// Why no numbers were found in a file: for a workbook that cannot be opened, the reason.

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 
 use super::map_file::{Map, read_map};
+use crate::cli::inspect::ScanOptions;
 use crate::cli::{CliError, values};
 use asperity::scans::description::LengthUnit;
 
@@ -41,7 +42,8 @@ pub(super) struct ArealShapeOptions {
     )]
     modes: Vec<Mode>,
     /// Map of one period: a file of an instrument (SDF, X3P, Digital Surf, Gwyddion text, Wyko ASCII, OpenCRG), or text
-    /// of three columns x, y and z, or of heights row by row with --size-mm.
+    /// of three columns x, y and z, or of heights row by row with --size-mm; any other text with the options under "Text
+    /// scans".
     #[arg(long, value_name = "FILE")]
     pub(super) map: Option<PathBuf>,
     /// Unit of a --map of text: nm, um, mm or m; never guessed.
@@ -57,6 +59,9 @@ pub(super) struct ArealShapeOptions {
     /// those of --map].
     #[arg(long, value_name = "NX[,NY]", value_parser = parse_points, conflicts_with = "map", allow_negative_numbers = true)]
     points: Option<Pair<usize>>,
+    /// How the text of a map is to be read.
+    #[command(flatten)]
+    text: ScanOptions,
 }
 
 /// A number for x, and one for y if that differs.
@@ -141,13 +146,18 @@ impl ArealShapeOptions {
     ) -> Result<ArealShape, CliError> {
         let given = self.size_mm.map(|size| [Some(size.x.mm_to_m()), size.y.map(Units::mm_to_m)]);
         let Some(path) = &self.map else {
+            if let Some(option) = self.text.given().first() {
+                return Err(CliError::input(format!(
+                    "{option} describes a --map of text, and the surface is given by --mode: leave it out"
+                )));
+            }
             let [length, width] = given.unwrap_or_default();
             let length = length.unwrap_or_default();
             let points = grid_points(&self.modes, self.points).map_err(CliError::input)?;
             admit(points)?;
             return Ok(superpose(&self.modes, [length, width.unwrap_or(length)], points));
         };
-        let mut map = read_map(path, self.map_unit, given)?;
+        let mut map = read_map(path, self.map_unit, given, &self.text)?;
         for n in map.points {
             if !(LEAST_POINTS..=MOST_POINTS).contains(&n) {
                 let [nx, ny] = map.points;

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use crate::cli::inspect::read_instrument;
+use crate::cli::inspect::{ScanOptions, read_instrument};
 use crate::cli::{CliError, values};
 use asperity::files;
+use asperity::scans::Described;
 use asperity::scans::description::LengthUnit;
 use asperity::scans::file::{Grid, ScanFile};
 
@@ -24,8 +25,8 @@ pub(super) struct Map {
     pub heights: Vec<f64>,
 }
 
-/// Reads a map. An instrument file states its units and spacings; a text has a `unit`, and one of heights alone, row by row,
-/// the `size` in m of its rows and, if its spacings differ, of its columns.
+/// Reads a map. An instrument file states its units and spacings; a text is described by the options `text`, or has a `unit`
+/// and, if it is one of heights alone, row by row, the `size` in m of its rows and, if its spacings differ, of its columns.
 ///
 /// # Errors
 /// [`CliError::Input`] with the file and the line or point.
@@ -33,20 +34,39 @@ pub(super) fn read_map(
     path: &Path,
     unit: Option<LengthUnit>,
     size: Option<[Option<f64>; 2]>,
+    text: &ScanOptions,
 ) -> Result<Map, CliError> {
     let in_file = |problem: String| CliError::input(format!("{}: {problem}", path.display()));
+    let given = match (unit, size) {
+        (Some(_), _) => Some("--map-unit"),
+        (None, size) => size.map(|_| "--size-mm"),
+    };
     if let Some(scan) = read_instrument(path, None)? {
-        if unit.is_some() || size.is_some() {
-            let given = if unit.is_some() { "--map-unit" } else { "--size-mm" };
+        text.refuse(path, "the file of an instrument, which states its units")?;
+        if let Some(given) = given {
             return Err(in_file(format!(
                 "is the file of an instrument, which states its units and spacings: leave {given} out"
             )));
         }
-        return of_instrument(scan).map_err(in_file);
+        return of_grid(scan).map_err(in_file);
+    }
+    if let Some(option) = text.given().first() {
+        if let Some(given) = given {
+            return Err(in_file(format!(
+                "is described by {option}, and its unit and spacings by such options too: leave {given} out"
+            )));
+        }
+        return match text.read(path)? {
+            Described::Map(scan) => of_grid(scan).map_err(in_file),
+            Described::Line(_) => Err(in_file(
+                "is described as a line, not a map: give --y-column and --y-unit as well, or --matrix for rows of heights".into(),
+            )),
+        };
     }
     let Some(unit) = unit else {
         return Err(in_file(
-            "is not an instrument file; to read it as text, give --map-unit (nm, um, mm or m), which is never guessed"
+            "is not an instrument file; to read it as text, give --map-unit (nm, um, mm or m), which is never guessed, or \
+             describe it as for inspect"
                 .into(),
         ));
     };
@@ -56,7 +76,7 @@ pub(super) fn read_map(
     of_text(&text, unit, size).map_err(in_file)
 }
 
-fn of_instrument(scan: ScanFile) -> Result<Map, String> {
+fn of_grid(scan: ScanFile) -> Result<Map, String> {
     let Grid::Map { columns, rows, spacing_x, spacing_y } = scan.grid else {
         return Err("holds a line, not a map: a recipe reads it (section [ingest])".into());
     };

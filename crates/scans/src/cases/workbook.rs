@@ -59,11 +59,11 @@ fn the_sheet_of_the_scan_is_found_with_its_names_and_gaps() {
     sheet.write(11, 0, "oops").unwrap();
     let format = TextFormat {
         sheet: None,
-        header: false,
+        header: Some(false),
         x_column: None,
         x_unit: None,
         x_spacing_um: Some(1.0),
-        z_column: Column::Number(1),
+        z_column: Some(Column::Number(1)),
         separator: Separator::Comma,
         skip_until: None,
         skip_lines: 0,

@@ -35,12 +35,12 @@ impl Columns {
         let known = names.as_deref().unwrap_or_default();
         let place = |column: &Column| find(column, known);
         let by_name = |column: &Column| matches!(column, Column::Name(_));
+        let described = [&format.x_column, &format.y_column, &format.z_column];
         let exact = format.separator == Separator::Whitespace
-            && (by_name(&format.z_column)
-                || [&format.x_column, &format.y_column].into_iter().flatten().any(by_name));
+            && described.into_iter().flatten().any(by_name);
         let x = format.x_column.as_ref().map(place).transpose()?;
         let y = format.y_column.as_ref().map(place).transpose()?;
-        let z = place(&format.z_column)?;
+        let z = place(format.height_column()?)?;
         Ok(Self { x, y, z, names, exact })
     }
 

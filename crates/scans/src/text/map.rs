@@ -28,14 +28,8 @@ pub(super) fn on_grid(points: Points, format: &TextFormat) -> Result<ScanFile, S
     }
     // `validate` has seen that the units are there.
     let unit = |unit: Option<_>| unit.unwrap_or(M);
-    let spacing = |key, step: f64| {
-        if SPACINGS_M.contains(&step) {
-            return Ok(step);
-        }
-        Err(ScanProblem::AbsurdSpacing { spacing_mm: step * 1e3, key })
-    };
-    let spacing_x = spacing("x_unit", unit(format.x_unit).metres(lattice.step_x))?;
-    let spacing_y = spacing("y_unit", unit(format.y_unit).metres(lattice.step_y))?;
+    let spacing_x = plausible(unit(format.x_unit).metres(lattice.step_x), "x_unit")?;
+    let spacing_y = plausible(unit(format.y_unit).metres(lattice.step_y), "y_unit")?;
     let sign = if format.invert_z { -1.0 } else { 1.0 };
     let mut heights = vec![f64::NAN; places];
     let mut taken = vec![false; places];
@@ -60,4 +54,12 @@ pub(super) fn on_grid(points: Points, format: &TextFormat) -> Result<ScanFile, S
         heights,
         instrument: Vec::new(),
     })
+}
+
+/// A spacing in m, unless only a mistake in the `key` explains it.
+pub(super) fn plausible(spacing: f64, key: &'static str) -> Result<f64, ScanProblem> {
+    if SPACINGS_M.contains(&spacing) {
+        return Ok(spacing);
+    }
+    Err(ScanProblem::AbsurdSpacing { spacing_mm: spacing * 1e3, key })
 }

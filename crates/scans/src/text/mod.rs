@@ -1,12 +1,14 @@
-//! Text files of one point per line.
+//! Text files of one point per line, or of one row of heights per line.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | `rows`, `columns`, `number` | lines as cells, the cells of position and height, cells as numbers |
 //! | `map` | height maps: x, y and z on each line |
+//! | `matrix` | height maps: a row of heights on each line |
 
 mod columns;
 mod map;
+mod matrix;
 mod number;
 mod rows;
 #[cfg(test)]
@@ -32,7 +34,7 @@ use std::path::Path;
 pub enum Described {
     /// Points along a line.
     Line(RawScan),
-    /// Points on a grid, where the description has a `y_column`.
+    /// Points on a grid, where the description has a `y_column` or is that of a `matrix`.
     Map(ScanFile),
 }
 
@@ -47,7 +49,7 @@ pub fn read_text(path: &Path, format: &TextFormat) -> Result<RawScan, ScanError>
             file: path.display().to_string(),
             line: None,
             column: None,
-            problem: no_line(),
+            problem: no_line(format),
         }),
     }
 }
@@ -76,14 +78,16 @@ pub fn parse_text(name: &str, bytes: &[u8], format: &TextFormat) -> Result<RawSc
     match parse_described(name, bytes, format)? {
         Described::Line(scan) => Ok(scan),
         Described::Map(_) => {
-            Err(ScanError { file: name.to_owned(), line: None, column: None, problem: no_line() })
+            let problem = no_line(format);
+            Err(ScanError { file: name.to_owned(), line: None, column: None, problem })
         }
     }
 }
 
-fn no_line() -> ScanProblem {
+fn no_line(format: &TextFormat) -> ScanProblem {
     let reason = "describes a height map, and a line scan is needed here";
-    ScanProblem::Description { key: "y_column", reason: reason.into() }
+    let key = if format.matrix { "matrix" } else { "y_column" };
+    ScanProblem::Description { key, reason: reason.into() }
 }
 
 /// [`read_source`] of the bytes of a file.
@@ -129,8 +133,12 @@ pub fn read_source(
     };
     let mut lines = TextLines::open(source, &format.encoding).map_err(located)?;
     lines.skip_preamble(&format).map_err(located)?;
-    let points = read_points(Rows::new(lines, &format), &format)
-        .map_err(|failure| error(failure.line, failure.column, failure.problem))?;
+    let rows = Rows::new(lines, &format);
+    let failed = |failure: Failure| error(failure.line, failure.column, failure.problem);
+    if format.matrix {
+        return Ok(Described::Map(matrix::read(rows, &format).map_err(failed)?));
+    }
+    let points = read_points(rows, &format).map_err(failed)?;
     if format.y_column.is_some() {
         let map = map::on_grid(points, &format).map_err(whole)?;
         return Ok(Described::Map(map));
@@ -174,10 +182,10 @@ fn read_points(mut rows: Rows<'_>, format: &TextFormat) -> Result<Points, Failur
         Failure { line: None, column: None, problem }
     };
 
-    if format.header && !rows.read_names(&mut record, &cells)? {
+    if format.has_header() && !rows.read_names(&mut record, &cells)? {
         return Err(too_few(&rows, 0));
     }
-    let header = format.header.then_some(&record);
+    let header = format.has_header().then_some(&record);
     let columns =
         Columns::resolve(format, header, &cells).map_err(|problem| on_line(&rows, problem))?;
 

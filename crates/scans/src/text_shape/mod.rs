@@ -37,6 +37,10 @@ const MOST_LINES: usize = 2000;
 const MOST_SHEETS: usize = 50;
 /// Columns that a table of positions and heights has at most where they have no names.
 const MOST_NAMELESS: usize = 12;
+/// Columns from which on those that grow may be heights.
+const FEWEST_OF_ROWS: usize = 8;
+/// Heights of a matrix among which marks of missing ones are sought.
+const MOST_HEIGHTS: usize = 1 << 22;
 
 /// What a text file looks like.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,18 +165,25 @@ impl TextShape {
         let keys = [
             contradiction("x_unit", format.x_column.as_ref(), format.x_unit),
             contradiction("y_unit", format.y_column.as_ref(), format.y_unit),
-            contradiction("z_unit", Some(&format.z_column), format.z_unit),
+            contradiction("z_unit", format.z_column.as_ref(), format.z_unit),
         ];
         keys.into_iter().flatten().collect()
     }
 
     /// Whether the lines are rows of a height map: many numbers without names, or three and more of
-    /// which none is a position.
+    /// which none is a position. Where most of eight columns and more grow, it is the map that rises.
     pub fn is_matrix(&self) -> bool {
         let columns = self.columns.len();
         let nameless = self.columns.iter().all(|column| column.name.is_empty());
-        let positions = self.columns.iter().any(|column| column.grows) || self.map.is_some();
-        !self.header && nameless && (columns > MOST_NAMELESS || (columns > 2 && !positions))
+        let growing = self.columns.iter().filter(|column| column.grows).count();
+        let rises = columns >= FEWEST_OF_ROWS && 2 * growing > columns;
+        let no_positions = self.map.is_none() && (growing == 0 || rises);
+        !self.header && nameless && (columns > MOST_NAMELESS || (columns > 2 && no_positions))
+    }
+
+    /// Whether the file seems to hold a height map and not a line.
+    pub fn is_map(&self) -> bool {
+        self.map.is_some() || self.is_matrix()
     }
 
     /// Numbers, from 0, of the columns of positions and heights: positions grow, heights are the
@@ -308,12 +319,19 @@ fn describe(
 
 /// Adds what the cells of the points say: marks of missing heights, separated thousands.
 fn with_marks(shape: TextShape, layout: Layout, body: &Body, text: &str) -> TextShape {
-    let (_, z) = shape.proposed_columns();
     let points = || lines(text).skip(body.start).take(body.rows());
-    let heights = points().filter_map(|line| layout.cells(line).into_iter().nth(z));
     let is_word = |cell: &String| layout.number(cell).is_none_or(f64::is_nan);
-    let mut missing = missing::words(heights.filter(is_word));
-    let numbers: Vec<f64> = body.column(z).collect();
+    let (mut missing, numbers): (_, Vec<f64>) = if shape.is_matrix() {
+        let heights = points().flat_map(|line| layout.cells(line)).take(MOST_HEIGHTS);
+        (
+            missing::words(heights.filter(is_word)),
+            body.numbers.iter().copied().take(MOST_HEIGHTS).collect(),
+        )
+    } else {
+        let (_, z) = shape.proposed_columns();
+        let heights = points().filter_map(|line| layout.cells(line).into_iter().nth(z));
+        (missing::words(heights.filter(is_word)), body.column(z).collect())
+    };
     let far = missing::numbers(&numbers);
     let inside = repeated_inside(&numbers).into_iter().map(|mark| mark.height);
     let inside: Vec<f64> = inside.filter(|mark| !far.contains(mark)).collect();

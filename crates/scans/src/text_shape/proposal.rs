@@ -5,12 +5,23 @@ use crate::TextFormat;
 use crate::description::{Column, DecimalMark, LengthUnit, Separator, default_missing};
 use std::fmt::Write;
 
+/// What a matrix does not state.
+const MATRIX: &str = "\
+matrix = true
+# x_spacing_um = ?            # distance between neighbouring heights of a line: the file does not state it
+# y_spacing_um = ?            # distance between the lines; x_spacing_um if left out
+# z_unit = ?                  # the file does not state it: nm, um, mm or m
+";
+
 impl TextShape {
     /// The proposed description.
     ///
     /// # Errors
     /// The keys that the file does not state a value of.
     pub fn format(&self) -> Result<TextFormat, Vec<&'static str>> {
+        if self.is_matrix() {
+            return Err(vec!["x_spacing_um", "z_unit"]);
+        }
         let (x, z) = self.proposed_columns();
         let y = self.proposed_y();
         let unit = |number: usize| self.columns[number].unit;
@@ -34,13 +45,15 @@ impl TextShape {
             skip_lines: if self.skip_until.is_some() { 0 } else { self.skip_lines },
             skip_until: self.skip_until.clone(),
             stop_at: self.stop_at.clone(),
-            header: self.header,
+            matrix: false,
+            header: Some(self.header),
             x_column: x.map(|x| self.column(x)),
             x_spacing_um: None,
+            y_spacing_um: None,
             x_unit: x.and_then(unit),
             y_column: y.map(|y| self.column(y)),
             y_unit: y.and_then(unit),
-            z_column: self.column(z),
+            z_column: Some(self.column(z)),
             z_unit: unit(z),
             invert_z: false,
             missing: default_missing().into_iter().chain(self.missing.clone()).collect(),
@@ -55,6 +68,27 @@ impl TextShape {
     pub fn recipe_section(&self) -> String {
         let mut text = String::from("[ingest.text]\n");
         self.lines_of_layout(&mut text);
+        if self.is_matrix() {
+            text.push_str(MATRIX);
+        } else {
+            self.lines_of_columns(&mut text);
+        }
+        let mut line = |line: String| {
+            // Writing to a text does not fail.
+            let _ = writeln!(text, "{line}");
+        };
+        if !self.missing.is_empty() {
+            let marks = default_missing().into_iter().chain(self.missing.clone());
+            let marks: Vec<String> = marks.map(|mark| quoted(&mark)).collect();
+            line(format!("missing = [{}]", marks.join(", ")));
+        }
+        if self.encoding != "utf-8" {
+            line(format!("encoding = \"{}\"", self.encoding));
+        }
+        text
+    }
+
+    fn lines_of_columns(&self, text: &mut String) {
         let mut line = |line: String| {
             // Writing to a text does not fail.
             let _ = writeln!(text, "{line}");
@@ -75,15 +109,6 @@ impl TextShape {
         }
         line(format!("z_column = {}", self.column_text(z)));
         line(unit_text("z_unit", self.columns[z].unit));
-        if !self.missing.is_empty() {
-            let marks = default_missing().into_iter().chain(self.missing.clone());
-            let marks: Vec<String> = marks.map(|mark| quoted(&mark)).collect();
-            line(format!("missing = [{}]", marks.join(", ")));
-        }
-        if self.encoding != "utf-8" {
-            line(format!("encoding = \"{}\"", self.encoding));
-        }
-        text
     }
 
     fn lines_of_layout(&self, text: &mut String) {
@@ -109,7 +134,7 @@ impl TextShape {
         if let Some(footer) = &self.stop_at {
             line(format!("stop_at = {}", quoted(footer)));
         }
-        if !self.header {
+        if !self.header && !self.is_matrix() {
             line("header = false".into());
         }
     }

@@ -87,6 +87,41 @@ fn units_that_are_not_stated_are_asked_for() {
 }
 
 #[test]
+fn rows_of_heights_are_proposed_as_a_matrix_with_its_spacing_left_open() {
+    let rough = |i: usize, j: usize| ((i * 7 + j * 5) % 11) as f64 / 2.0;
+    let rising = |i: usize, j: usize| (i + j) as f64;
+    for (columns, height) in [(8, rough as fn(usize, usize) -> f64), (8, rising), (30, rough)] {
+        let mut text = String::from("% exported\n");
+        for j in 0..20 {
+            let cell = |i: usize| match (i, j) {
+                (3, 4) | (5, 6) => "***".to_owned(),
+                (2, 2 | 9) => "-9999".to_owned(),
+                _ => height(i, j).to_string(),
+            };
+            text += &((0..columns).map(cell).collect::<Vec<_>>().join("\t") + "\n");
+        }
+        let found = shape(text.as_bytes());
+        assert!(found.is_matrix() && found.is_map(), "{found:?}");
+        assert_eq!(found.missing, ["***", "-9999"]);
+        assert_eq!(found.format(), Err(vec!["x_spacing_um", "z_unit"]));
+        let section = found.recipe_section();
+        let part = "matrix = true\n# x_spacing_um = ?";
+        assert!(section.contains(part) && !section.contains("column ="), "{section}");
+        // With what was left open it is a description that reads the file.
+        let section = section
+            .replace("# x_spacing_um = ?", "x_spacing_um = 5")
+            .replace("# z_unit = ?", "z_unit = 'um'");
+        let format: TextFormat = toml::from_str(section.split_once('\n').unwrap().1).unwrap();
+        let crate::Described::Map(map) =
+            crate::parse_described("a", text.as_bytes(), &format).unwrap()
+        else {
+            panic!("{section}")
+        };
+        assert_eq!((map.heights.len(), map.missing()), (20 * columns, 4));
+    }
+}
+
+#[test]
 fn text_without_numbers_has_no_shape() {
     for bytes in [b"".as_slice(), b"no numbers\nat all\n", b"1\n", &[0xff, 0, 1], b"\xff\xfe"] {
         assert_eq!(TextShape::of(bytes), None, "{bytes:?}");
@@ -258,7 +293,7 @@ fn a_description_that_contradicts_the_names_of_the_columns_is_told() {
         ["the column `Distance (mm)` states mm, the description x_unit = \"um\""]
     );
     let by_number =
-        TextFormat { z_column: Column::Number(2), z_unit: Some(LengthUnit::M), ..format };
+        TextFormat { z_column: Some(Column::Number(2)), z_unit: Some(LengthUnit::M), ..format };
     assert_eq!(found.contradictions(&by_number).len(), 1);
     // A number among columns that another separator makes is another column.
     let other = TextFormat { separator: Separator::Comma, ..by_number };

@@ -1,6 +1,7 @@
 //! Good files and real files; those that cannot be read are in `bad_files`.
 
 mod bad_files;
+mod matrix;
 
 use super::*;
 use crate::description::{Column, DecimalMark, LengthUnit, Separator};
@@ -37,14 +38,14 @@ fn the_description_reads_from_a_recipe_and_back() {
     );
     assert_eq!(full.separator.character(), Some(';'));
     assert_eq!(full.decimal_mark, DecimalMark::Comma);
-    assert_eq!(full.z_column, Column::Number(3));
+    assert_eq!(full.z_column, Some(Column::Number(3)));
     assert_eq!(format(&toml::to_string(&full).unwrap()), full);
 
     let schema = serde_json::to_value(schemars::schema_for!(TextFormat)).unwrap();
-    assert_eq!(schema["required"], serde_json::json!(["separator", "z_column", "z_unit"]));
+    assert_eq!(schema["required"], serde_json::json!(["separator", "z_unit"]));
 
     let named = simple("");
-    assert_eq!((named.header, named.x_unit), (true, Some(LengthUnit::Mm)));
+    assert_eq!((named.header, named.x_unit), (Some(true), Some(LengthUnit::Mm)));
     assert_eq!(format("separator = 'whitespace'\nz_column = 'z'").separator, Separator::Whitespace);
     assert!(
         toml::from_str::<TextFormat>("separator = 'comma'\nz_column = 1\nz_units = 'mm'").is_err()
