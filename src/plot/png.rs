@@ -27,7 +27,31 @@ pub fn png(svg: &str) -> Result<Vec<u8>, FigureError> {
     picture.fill(tiny_skia::Color::WHITE);
     let enlarge = tiny_skia::Transform::from_scale(ENLARGEMENT, ENLARGEMENT);
     resvg::render(&tree, enlarge, &mut picture.as_mut());
+    draw_pictures(tree.root(), enlarge, &mut picture)?;
     picture.encode_png().map_err(|error| FigureError(error.to_string()))
+}
+
+/// Draws the PNG pictures of a group over the rest: resvg draws them with decoders of more formats alone.
+fn draw_pictures(
+    group: &usvg::Group,
+    enlarge: tiny_skia::Transform,
+    onto: &mut tiny_skia::Pixmap,
+) -> Result<(), FigureError> {
+    for node in group.children() {
+        match node {
+            usvg::Node::Group(group) => draw_pictures(group, enlarge, onto)?,
+            usvg::Node::Image(image) => {
+                let usvg::ImageKind::PNG(bytes) = image.kind() else { continue };
+                let pixels = tiny_skia::Pixmap::decode_png(bytes)
+                    .map_err(|error| FigureError(error.to_string()))?;
+                let place = enlarge.pre_concat(image.abs_transform());
+                let paint = tiny_skia::PixmapPaint::default();
+                onto.draw_pixmap(0, 0, pixels.as_ref(), &paint, place, None);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
