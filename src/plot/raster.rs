@@ -62,6 +62,7 @@ fn png([width, height]: [u32; 2], pixels: &[[u8; 3]]) -> Result<Vec<u8>, FigureE
     let size = tiny_skia::IntSize::from_wh(width, height);
     let bytes = pixels.iter().flat_map(|[r, g, b]| [*r, *g, *b, u8::MAX]).collect();
     let picture = size.and_then(|size| tiny_skia::Pixmap::from_vec(bytes, size));
-    let picture = picture.ok_or_else(|| FigureError("a map has not as many values as cells".into()))?;
+    let picture =
+        picture.ok_or_else(|| FigureError("a map has not as many values as cells".into()))?;
     picture.encode_png().map_err(|error| FigureError(error.to_string()))
 }

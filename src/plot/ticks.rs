@@ -33,13 +33,7 @@ impl Ticks {
 
     /// No ticks at all.
     pub(super) fn none() -> Self {
-        Self {
-            labelled: vec![],
-            minor: vec![],
-            scale: Scale::Linear,
-            decimals: 0,
-            plain: true,
-        }
+        Self { labelled: vec![], minor: vec![], scale: Scale::Linear, decimals: 0, plain: true }
     }
 
     fn linear(range: &Range<f64>) -> Self {

@@ -58,6 +58,8 @@ pub struct About {
     pub temperature_c: Option<f64>,
     /// Relative accuracy that the recipe asks for, if it does.
     pub tolerance: Option<f64>,
+    /// Direction of sliding over areal surfaces in degrees from x towards y, if there are any.
+    pub angle_deg: Option<f64>,
 }
 
 impl About {
@@ -68,10 +70,13 @@ impl About {
     pub fn of(run: &RunView) -> Result<Self, ArtifactError> {
         let parameters = run.stage_manifest("bem")?.map(|manifest| manifest.parameters);
         let parameters = parameters.unwrap_or_default();
+        let areal = run.stage_manifest("areal")?.map(|manifest| manifest.parameters);
         Ok(Self {
             rubber: parameters["rubber"]["name"].as_str().unwrap_or("unknown").to_owned(),
             temperature_c: parameters["temperature_c"].as_f64(),
             tolerance: parameters["average_tolerance"].as_f64(),
+            // The friction tables have the first direction of the recipe.
+            angle_deg: areal.and_then(|areal| areal["areal"]["angles_deg"][0].as_f64()),
         })
     }
 }
@@ -84,16 +89,27 @@ impl About {
     }
 }
 
+impl About {
+    /// In which direction the rubber slides over areal surfaces, in a sentence, if there are any.
+    pub(super) fn sliding(&self) -> Option<String> {
+        let angle = self.angle_deg?;
+        Some(format!(
+            "Over maps and isotropic surfaces the rubber slides at {angle}° from x, the rows of the maps."
+        ))
+    }
+}
+
 impl FrictionTable {
     /// What the table holds, in one line: all that its numbers depend on.
     pub fn caption(&self, about: &About) -> String {
         let tolerance = about.tolerance.map(|tolerance| format!(", tolerance {tolerance}"));
         format!(
-            "Friction coefficient over {}, model {}, {}, {} mm/s{}, {}{}, {}, asperity {}",
+            "Friction coefficient over {}, model {}, {}, {} mm/s{}{}, {}{}, {}, asperity {}",
             self.in_order("contact area fraction", "mean pressure")[0],
             self.model,
             self.road(),
             self.speed_mm_s,
+            self.direction(about),
             self.other_condition(),
             self.basis(),
             tolerance.unwrap_or_default(),
@@ -112,6 +128,12 @@ impl FrictionTable {
         };
         let shortest = significant(first.shortest_wavelength_mm);
         format!("{}{windows}, waves from {shortest} mm", self.kind)
+    }
+
+    /// Direction of sliding, where the surfaces are rough in both.
+    fn direction(&self, about: &About) -> String {
+        let angle = about.angle_deg.filter(|_| self.kind.method.is_areal());
+        angle.map_or(String::new(), |angle| format!(" at {angle}° from x"))
     }
 
     /// Range of what is not given.
@@ -338,7 +360,7 @@ mod tests {
     use serde_json::json;
 
     fn about(rubber: &str) -> About {
-        About { rubber: rubber.into(), temperature_c: None, tolerance: None }
+        About { rubber: rubber.into(), temperature_c: None, tolerance: None, angle_deg: None }
     }
 
     fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
@@ -390,7 +412,12 @@ mod tests {
         let caption = text.lines().find(|line| line.starts_with("\\caption")).unwrap();
         assert!(caption.contains("\\% ") && caption.ends_with('}'), "{caption}");
         assert!(!text.contains('\u{1b}'));
-        let all = About { rubber: "x".into(), temperature_c: Some(-10.0), tolerance: Some(0.01) };
+        let all = About {
+            rubber: "x".into(),
+            temperature_c: Some(-10.0),
+            tolerance: Some(0.01),
+            angle_deg: None,
+        };
         assert_eq!(
             tables[0].caption(&all),
             format!(

@@ -53,7 +53,8 @@ pub(super) fn draw(
     let style = TextStyle::from((FONT, letters).into_font()).pos(Pos::new(HPos::Center, VPos::Top));
     area.draw(&Text::new(title, ((WIDTH / 2) as i32, 14 * FINE as i32), style))?;
 
-    let coordinate = |range: Range<f64>, scale| Coordinate { ticks: Ticks::new(scale, &range), range };
+    let coordinate =
+        |range: Range<f64>, scale| Coordinate { ticks: Ticks::new(scale, &range), range };
     let x = coordinate(0.0..map.size[0], panel.x.scale);
     let y = coordinate(0.0..map.size[1], panel.y.scale);
     let beside = room_beside(&y.ticks);
@@ -75,9 +76,10 @@ pub(super) fn draw(
         .draw()?;
     let frame = inside(&chart.plotting_area().get_pixel_range());
     let range = colour_range(map)?;
-    let bar_area = area
-        .clone()
-        .shrink((left + width + BETWEEN, TOP), (WIDTH - left - width - BETWEEN - MARGIN_RIGHT, plot));
+    let bar_area = area.clone().shrink(
+        (left + width + BETWEEN, TOP),
+        (WIDTH - left - width - BETWEEN - MARGIN_RIGHT, plot),
+    );
     let bar = draw_bar(&bar_area, map, range.clone())?;
     draw_key(area, map, (left, TOP + plot + BELOW), width)?;
     Ok([Picture::of_map(map, &range, frame)?, Picture::of_bar(bar)?])
@@ -136,7 +138,8 @@ fn draw_key(area: &Area, map: &Map, (left, top): (u32, u32), width: u32) -> Draw
     let (left, top) = (left as i32, top as i32);
     let fine = FINE as i32;
     let text = |text: String, at: (i32, i32), horizontal: HPos| {
-        let style = TextStyle::from((FONT, LABEL).into_font()).pos(Pos::new(horizontal, VPos::Center));
+        let style =
+            TextStyle::from((FONT, LABEL).into_font()).pos(Pos::new(horizontal, VPos::Center));
         area.draw(&Text::new(text, at, style))
     };
     let length = round_length(SCALE_BAR * map.size[0]);

@@ -58,11 +58,14 @@ pub fn friction_figure(rows: &[FrictionRow], about: &About) -> Figure {
         });
         compared.collect()
     };
+    let areal = rows.iter().any(|row| row.kind.method.is_areal());
+    let sliding = about.sliding().filter(|_| areal);
     Figure {
-        caption:
-            "Friction coefficient over contact area fraction or mean pressure, averaged over the realisations; \
-                  bands are 95 % confidence intervals of the mean, pale points single realisations."
-                .into(),
+        caption: format!(
+            "Friction coefficient over contact area fraction or mean pressure, averaged over the realisations; bands are \
+             95 % confidence intervals of the mean, pale points single realisations.{}",
+            sliding.map_or(String::new(), |text| format!(" {text}"))
+        ),
         panels,
     }
 }
@@ -200,7 +203,7 @@ mod tests {
     use super::*;
 
     fn about() -> About {
-        About { rubber: "x".into(), temperature_c: None, tolerance: None }
+        About { rubber: "x".into(), temperature_c: None, tolerance: None, angle_deg: None }
     }
 
     fn row(model: Model, speed_mm_s: f64) -> FrictionRow {
