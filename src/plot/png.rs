@@ -78,6 +78,22 @@ mod tests {
     }
 
     #[test]
+    fn pictures_are_drawn() {
+        let mut black = tiny_skia::Pixmap::new(1, 1).unwrap();
+        black.fill(tiny_skia::Color::BLACK);
+        let bytes = base64::Engine::encode(
+            &base64::engine::general_purpose::STANDARD,
+            black.encode_png().unwrap(),
+        );
+        let picture = format!(
+            "<image x=\"10\" y=\"5\" width=\"20\" height=\"10\" preserveAspectRatio=\"none\" \
+             href=\"data:image/png;base64,{bytes}\"/>"
+        );
+        // 40 by 20 pixels of the enlarged drawing.
+        assert_eq!(dark_pixels(&picture), 800);
+    }
+
+    #[test]
     fn what_is_no_svg_is_refused() {
         assert!(png("<svg").is_err());
     }

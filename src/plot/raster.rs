@@ -66,3 +66,30 @@ fn png([width, height]: [u32; 2], pixels: &[[u8; 3]]) -> Result<Vec<u8>, FigureE
         picture.ok_or_else(|| FigureError("a map has not as many values as cells".into()))?;
     picture.encode_png().map_err(|error| FigureError(error.to_string()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_row_is_at_the_bottom_and_no_value_is_grey() {
+        let map = Map {
+            cells: [2, 2],
+            size: [1.0, 1.0],
+            unit: "mm",
+            values: vec![0.0, f64::NAN, 1.0, 0.5],
+            colours: Axis::linear("p"),
+            arrow: None,
+            notes: vec![],
+        };
+        let picture = Picture::of_map(&map, &(0.0..1.0), [0, 0, 8, 8]).unwrap();
+        let pixels = tiny_skia::Pixmap::decode_png(&picture.png).unwrap();
+        let colours: Vec<[u8; 3]> = pixels
+            .pixels()
+            .iter()
+            .map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
+            .collect();
+        assert_eq!(colours, [of_share(1.0), of_share(0.5), of_share(0.0), NOTHING]);
+        assert!(Picture::of_map(&Map { values: vec![0.0], ..map }, &(0.0..1.0), [0; 4]).is_err());
+    }
+}

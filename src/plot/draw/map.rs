@@ -4,8 +4,8 @@ use super::super::panel::{Map, Panel};
 use super::super::raster::Picture;
 use super::super::ticks::{Ticks, round_length};
 use super::{
-    Area, Coordinate, Drawn, FINE, FONT, LABEL, MARGIN_LEFT, MARGIN_RIGHT, NAME, STROKE, WIDTH,
-    heading, room_beside,
+    Area, Coordinate, Drawn, FINE, FONT, LABEL, MARGIN_LEFT, NAME, STROKE, WIDTH, heading,
+    room_beside,
 };
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -76,11 +76,9 @@ pub(super) fn draw(
         .draw()?;
     let frame = inside(&chart.plotting_area().get_pixel_range());
     let range = colour_range(map)?;
-    let bar_area = area.clone().shrink(
-        (left + width + BETWEEN, TOP),
-        (WIDTH - left - width - BETWEEN - MARGIN_RIGHT, plot),
-    );
-    let bar = draw_bar(&bar_area, map, range.clone())?;
+    let bar_area =
+        area.clone().shrink((left + width + BETWEEN, TOP), (WIDTH - left - width - BETWEEN, plot));
+    let bar = draw_bar(&bar_area, map, &range)?;
     draw_key(area, map, (left, TOP + plot + BELOW), width)?;
     Ok([Picture::of_map(map, &range, frame)?, Picture::of_bar(bar)?])
 }
@@ -111,13 +109,16 @@ fn colour_range(map: &Map) -> Result<Range<f64>, Box<dyn std::error::Error>> {
 fn draw_bar(
     area: &Area,
     map: &Map,
-    range: Range<f64>,
+    range: &Range<f64>,
 ) -> Result<[i32; 4], Box<dyn std::error::Error>> {
-    let (width, _) = area.dim_in_pixel();
-    let colours = Coordinate { ticks: Ticks::new(map.colours.scale, &range), range };
+    let ticks = Ticks::new(map.colours.scale, range);
+    let (width, height) = area.dim_in_pixel();
+    let beside = room_beside(&ticks).min(width - BAR);
+    let area = area.clone().shrink((0, 0), (BAR + beside, height));
+    let colours = Coordinate { ticks, range: range.clone() };
     let across = Coordinate { ticks: Ticks::none(), range: 0.0..1.0 };
-    let mut chart = ChartBuilder::on(area)
-        .right_y_label_area_size(width - BAR)
+    let mut chart = ChartBuilder::on(&area)
+        .right_y_label_area_size(beside)
         .build_cartesian_2d(across, colours)?;
     chart
         .configure_mesh()
@@ -129,8 +130,7 @@ fn draw_bar(
         .axis_desc_style((FONT, NAME))
         .label_style((FONT, LABEL))
         .draw()?;
-    let [left, top, width, height] = inside(&chart.plotting_area().get_pixel_range());
-    Ok([left, top, width, height])
+    Ok(inside(&chart.plotting_area().get_pixel_range()))
 }
 
 /// Scale bar, arrow and notes.
@@ -172,4 +172,59 @@ fn draw_arrow(area: &Area, centre: (i32, i32), angle: f64) -> Drawn {
     let head = [at(ARROW, 0.0), at(0.4 * ARROW, 0.35 * ARROW), at(0.4 * ARROW, -0.35 * ARROW)];
     area.draw(&Polygon::new(head, BLACK))?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::panel::{Axis, Colour, Mark, Series};
+    use super::super::svg;
+    use super::*;
+
+    fn map(size: [f64; 2], values: Vec<f64>) -> Map {
+        Map {
+            cells: [values.len(), 1],
+            size,
+            unit: "mm",
+            values,
+            colours: Axis::logarithmic("pressure"),
+            arrow: Some((90.0, "slides".into())),
+            notes: vec!["a note".into()],
+        }
+    }
+
+    fn drawn(map: Map) -> Result<String, super::super::FigureError> {
+        svg(&[Panel {
+            title: "title".into(),
+            x: Axis::linear("x"),
+            y: Axis::linear("y"),
+            series: vec![Series::unnamed(Colour::Black, Mark::Map(map))],
+        }])
+    }
+
+    #[test]
+    fn maps_have_equal_scales_and_fit_their_panel() {
+        for size_mm in [[1.0, 1.0], [20.0, 1.0], [0.3, 4.0]] {
+            let (width, height, _) = size(&map(size_mm, vec![]));
+            assert!(width <= MOST_WIDTH && height <= MOST_HEIGHT);
+            let scales = (f64::from(width) / size_mm[0], f64::from(height) / size_mm[1]);
+            assert!((scales.0 / scales.1 - 1.0).abs() < 2e-3, "{scales:?}");
+            let text = drawn(map(size_mm, vec![1.0, 2.0])).unwrap();
+            let image = text.split("<image").nth(1).unwrap();
+            assert!(
+                image.contains(&format!("width=\"{width}\" height=\"{height}\"")),
+                "{size_mm:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn one_value_has_a_colour_bar_and_none_is_an_error() {
+        let text = drawn(map([1.0, 1.0], vec![3.0, f64::NAN])).unwrap();
+        assert_eq!(text.matches("<image").count(), 2);
+        for label in ["slides", "a note", "0.2 mm", "pressure"] {
+            assert!(text.contains(label), "{label}");
+        }
+        let nothing = drawn(map([1.0, 1.0], vec![f64::NAN])).unwrap_err().to_string();
+        assert!(nothing.contains("pressure: there are no values"), "{nothing}");
+    }
 }

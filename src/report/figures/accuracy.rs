@@ -6,7 +6,7 @@ use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages::areal::AREAL_SOLVES;
-use crate::stages::bem::SOLVES;
+use crate::stages::bem::{Given, SOLVES};
 use crate::stages::fem::{FEM_SOLVES, FemSolveRow};
 use crate::stages::micro::SAMPLES;
 use crate::stages::multilevel;
@@ -21,6 +21,10 @@ pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let friction = rows(run, FRICTION)?.unwrap_or_default();
     let half_space: Vec<FrictionRow> =
         friction.into_iter().filter(|row| row.model == Model::Bem).collect();
+    // Values at given pressures lie between those at given areas, with other errors: one line cannot have both.
+    let of_areas = half_space.iter().any(|row| row.given == Given::Area);
+    let half_space: Vec<FrictionRow> =
+        half_space.into_iter().filter(|row| !of_areas || row.given == Given::Area).collect();
     let tables = grouped(&half_space, |row| (row.kind, speed_key(row.speed_mm_s)));
     panels.extend(tables.into_values().filter_map(|rows| parts(&rows)));
     let caption = "Wall time of every contact against the estimated relative error of its friction \

@@ -34,15 +34,20 @@ pub fn friction_figure(rows: &[FrictionRow], about: &About) -> Figure {
         series,
     };
     let panels = if one_model && tables.len() > 1 {
-        let of_one = tables.chunk_by(|a, b| a[0].given == b[0].given).map(|tables| {
+        let of_one = one_model_panels(&tables);
+        let of_one = of_one.into_iter().map(|(speed, tables)| {
             let series = tables.iter().enumerate().flat_map(|(number, table)| {
                 let shortest = significant(table[0].shortest_wavelength_mm);
-                let name =
-                    format!("{} from {shortest} mm, {} mm/s", table[0].kind, table[0].speed_mm_s);
+                let own = match speed {
+                    Some(_) => String::new(),
+                    None => format!(", {} mm/s", table[0].speed_mm_s),
+                };
+                let name = format!("{} from {shortest} mm{own}", table[0].kind);
                 curve(table, &name, Colour::Nth(number), false)
             });
+            let speed = speed.map_or(String::new(), |speed| format!("{speed} mm/s, "));
             panel(
-                format!("Model {}, {}", rows[0].model, about.material()),
+                format!("Model {}, {speed}{}", rows[0].model, about.material()),
                 tables[0][0].given,
                 series.collect(),
             )
@@ -68,6 +73,23 @@ pub fn friction_figure(rows: &[FrictionRow], about: &About) -> Figure {
         ),
         panels,
     }
+}
+
+/// Rows of one kind of surfaces at one speed.
+type Rows<'a> = Vec<&'a FrictionRow>;
+
+/// The tables of each panel where there is one model: of all speeds, or where these are more than there are colours, of the
+/// speed that is named.
+fn one_model_panels<'a>(tables: &[Rows<'a>]) -> Vec<(Option<f64>, Vec<Rows<'a>>)> {
+    let of_given = tables.chunk_by(|a, b| a[0].given == b[0].given);
+    if of_given.clone().all(|tables| tables.len() <= Colour::COUNT) {
+        return of_given.map(|tables| (None, tables.to_vec())).collect();
+    }
+    let key = |table: &Rows| (table[0].given, super::speed_key(table[0].speed_mm_s));
+    let mut sorted = tables.to_vec();
+    sorted.sort_by_key(key);
+    let of_speed = sorted.chunk_by(|a, b| key(a) == key(b));
+    of_speed.map(|tables| (Some(tables[0][0].speed_mm_s), tables.to_vec())).collect()
 }
 
 /// The axis of what friction is given for.
@@ -249,5 +271,17 @@ mod tests {
             ]
         );
         assert!(titles(&[]).is_empty());
+        // Not more lines in a panel than colours.
+        let many: Vec<FrictionRow> = [8, 9, 10, 11]
+            .into_iter()
+            .flat_map(|waves| {
+                [10.0, 50.0].map(|speed| FrictionRow {
+                    kind: SurfaceKind::sines(waves),
+                    ..row(Model::Bem, speed)
+                })
+            })
+            .collect();
+        assert_eq!(titles(&many[..6]), ["Model bem, rubber x"]);
+        assert_eq!(titles(&many), ["Model bem, 10 mm/s, rubber x", "Model bem, 50 mm/s, rubber x"]);
     }
 }

@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 /// Most cells of a map along a direction.
 const MOST_CELLS: usize = 512;
 
+/// Share of the points in contact whose pressures have colours of their own.
+const MOST_PRESSURES: f64 = 0.99;
+
 /// Pressure of one contact.
 struct Contact {
     kind: SurfaceKind,
@@ -125,17 +128,28 @@ impl Contact {
         }
     }
 
+    /// Pressures with NaN out of contact, up to one that few exceed, with their largest.
+    fn shown_pressure(&self) -> (Vec<f64>, f64) {
+        let mut sorted: Vec<f64> = self.pressure.iter().copied().filter(|p| *p > 0.0).collect();
+        sorted.sort_by(f64::total_cmp);
+        let largest = sorted.last().copied().unwrap_or(0.0);
+        let place = (MOST_PRESSURES * sorted.len() as f64) as usize;
+        let end = sorted.get(place).copied().unwrap_or(largest);
+        let shown = |p: &f64| if *p > 0.0 { p.min(end) } else { f64::NAN };
+        (self.pressure.iter().map(shown).collect(), largest)
+    }
+
     /// Pressure, and the patches.
     fn panels(&self, about: &About, shortest_mm: Option<f64>) -> [Panel; 2] {
         let in_contact: Vec<bool> = self.pressure.iter().map(|p| *p > 0.0).collect();
         let patches = Patches::of(&in_contact, self.points);
-        let pressure: Vec<f64> =
-            self.pressure.iter().map(|p| if *p > 0.0 { *p } else { f64::NAN }).collect();
+        let (pressure, largest) = self.shown_pressure();
         let waves = shortest_mm.map(|mm| format!("waves from {} mm, ", number(mm, 3)));
         let of_pressure = vec![
             format!(
-                "mean pressure {} MPa, Ac/A0 = {}, µ = {}",
+                "mean pressure {} MPa, largest {} MPa, Ac/A0 = {}, µ = {}",
                 number(self.mean_pressure_mpa, 3),
+                number(largest, 3),
                 number(self.area, 3),
                 number(self.friction, 3)
             ),
@@ -187,10 +201,10 @@ pub(super) fn pressure_map(run: &RunView) -> Result<Option<Figure>, ReportError>
     };
     Ok(Some(Figure {
         caption: format!(
-            "Contact of one period of {}, realisation {}, with the half-space: pressure, and contact patches in the colour \
-             of their area, for each speed at the smallest area that was kept. Grey is out of contact. Patches are points \
-             in contact that touch along an edge of their grid cells (4 neighbours), also across the edges of the period, \
-             on which both directions are periodic.{blocks}",
+            "Contact of the half-space with one period of {}, realisation {}: pressure, and contact patches coloured by \
+             their area, for each speed at the smallest area that was kept. Grey is out of contact; the largest hundredth \
+             of the pressures has the last colour. Patches are points in contact that touch along an edge of their grid \
+             cells (4 neighbours); surface and contact go on periodically beyond the edges.{blocks}",
             first.kind, first.realisation
         ),
         panels: contacts.iter().flat_map(|one| one.panels(&about, shortest(one))).collect(),
@@ -249,7 +263,7 @@ mod tests {
         assert_eq!(
             map(&pressure).notes,
             [
-                "mean pressure 0.300 MPa, Ac/A0 = 0.0500, µ = 0.400",
+                "mean pressure 0.300 MPa, largest 4.00 MPa, Ac/A0 = 0.0500, µ = 0.400",
                 "waves from 0.400 mm, rubber tread at 20 °C"
             ]
         );

@@ -39,6 +39,7 @@ mod study;
 mod waves;
 
 pub use friction::friction_figure;
+pub(super) use methods::reference;
 pub(super) use rubber::{Material, material};
 pub use rubber_fit::rubber_fit_figure;
 pub use speed::speed_figure;

@@ -19,7 +19,7 @@ impl Report<'_> {
         let sliding = About::of(self.run)?.sliding();
         Ok(html! {
             (self.doubt(&[stages::realise::STAGE, stages::areal::STAGE]))
-            @if let Some(sliding) = sliding { p { "Friction of the tables: " (sliding) } }
+            @if let Some(sliding) = sliding { p { (sliding) " The friction tables have this direction." } }
             (self.figure("direction")?)
             (self.figure("pressure-map")?)
             (surface_table(&surfaces))

@@ -3,6 +3,7 @@
 use super::Report;
 use super::page::{absent, number, optional, percent, table};
 use crate::report::ReportError;
+use crate::report::figures::reference;
 use crate::report::read::rows;
 use crate::report::tables::{About, FrictionTable, friction_tables};
 use crate::stages;
@@ -217,7 +218,10 @@ fn model_table(models: &[ModelRow]) -> Markup {
 
 fn method_table(methods: &[MethodRow]) -> Markup {
     table(
-        "Friction of the same road under the surfaces that stand for it",
+        &format!(
+            "Friction of the same road under the surfaces that stand for it, and its ratio to that of the {}",
+            reference(methods)
+        ),
         &[
             "model",
             "surfaces",
@@ -226,7 +230,7 @@ fn method_table(methods: &[MethodRow]) -> Markup {
             "pressure / MPa",
             "realisations",
             "mean µ",
-            "over measured",
+            "ratio",
             "± 95 %",
         ],
         2,

@@ -128,7 +128,7 @@ impl Report<'_> {
             add("waves", "Waves, slopes and the model of each", self.waves()?);
             add("friction", "Friction over contact area", self.friction()?);
             add("correction", "Correction over pressure", self.correction()?);
-            add("fields", "Pressure and deformed profiles", self.fields()?);
+            add("fields", "Pressure along profiles and deformed profiles", self.fields()?);
             if self.has_areal_surfaces()? {
                 add(
                     "areal",
