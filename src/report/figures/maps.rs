@@ -3,10 +3,10 @@
 use super::patches::Patches;
 use crate::artifact::{ArrayDataset, Attribute, RunView};
 use crate::plot::{Axis, Colour, Figure, Map, Mark, Panel, Series};
+use crate::report::About;
 use crate::report::ReportError;
 use crate::report::html::number;
 use crate::report::read::rows;
-use crate::report::tables::About;
 use crate::stages::areal::AREAL_FIELDS;
 use crate::stages::realise::{AREAL_SURFACES, ArealRow, Method, SurfaceKind};
 use crate::units::Units;

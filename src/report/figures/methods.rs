@@ -1,17 +1,15 @@
 //! Friction of one road under the surfaces that stand for it.
 
-use super::friction::{FRICTION_LABEL, abscissa, axis, curve};
+use super::friction::{FRICTION_LABEL, abscissa, axis, beside, curve, only_place};
 use super::{grouped, speed_key};
 use crate::artifact::RunView;
-use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
+use crate::plot::{Axis, Colour, Figure, Panel};
+use crate::report::About;
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::report::tables::{About, significant};
+use crate::report::tables::significant;
 use crate::stages::realise::{Method, SurfaceKind};
 use crate::stages::tables::{FRICTION, FrictionRow, METHODS, MethodRow};
-
-/// Distance between kinds of surfaces that stand beside each other, as a share of the area or pressure.
-const BESIDE: f64 = 0.04;
 
 /// A panel for each model and speed; in it every kind of surfaces, with the ratio of its friction to that of the measured
 /// profiles, or of the measured maps where no profile was measured.
@@ -52,20 +50,15 @@ fn shortest(rows: &[&FrictionRow]) -> String {
 
 fn panel(rows: &[&FrictionRow], compared: &[MethodRow], about: &About) -> Panel {
     let kinds = grouped(rows, |row| row.kind);
-    let places = grouped(rows, |row| abscissa(row).to_bits());
-    let middle = 0.5 * (kinds.len() as f64 - 1.0);
+    let place = only_place(rows);
     let series = kinds.values().enumerate().flat_map(|(number, rows)| {
         let rows: Vec<&FrictionRow> = rows.iter().map(|row| **row).collect();
         let name = match ratio(&rows, compared) {
             Some(ratio) => format!("{}, {ratio:.2} of measured", rows[0].kind),
             None => rows[0].kind.to_string(),
         };
-        // At one place alone all kinds would hide each other.
-        let shift = if places.len() == 1 { BESIDE * (number as f64 - middle) } else { 0.0 };
-        let at = abscissa(rows[0]);
-        curve(&rows, &name, Colour::Nth(number), false)
-            .into_iter()
-            .map(move |series| Series { mark: shifted(series.mark, shift * at), ..series })
+        let series = curve(&rows, &name, Colour::Nth(number), false);
+        beside(series, (number, kinds.len()), place)
     });
     Panel {
         title: format!(
@@ -78,20 +71,6 @@ fn panel(rows: &[&FrictionRow], compared: &[MethodRow], about: &About) -> Panel 
         x: axis(rows[0].given, rows.iter().map(|row| abscissa(row))),
         y: Axis::from_zero(FRICTION_LABEL),
         series: series.collect(),
-    }
-}
-
-/// Points and error bars, further to the right.
-fn shifted(mark: Mark, by: f64) -> Mark {
-    let points =
-        |points: Points| -> Points { points.into_iter().map(|(x, y)| (x + by, y)).collect() };
-    match mark {
-        Mark::FilledCircles(of) => Mark::FilledCircles(points(of)),
-        Mark::Dots(of) => Mark::Dots(points(of)),
-        Mark::ErrorBars(bars) => {
-            Mark::ErrorBars(bars.into_iter().map(|(x, low, high)| (x + by, low, high)).collect())
-        }
-        other => other,
     }
 }
 

@@ -46,8 +46,9 @@ pub use speed::speed_figure;
 pub use study::study_figure;
 pub(super) use waves::microscale_slope;
 
+use super::About;
 use super::ReportError;
-use super::tables::{About, significant};
+use super::tables::significant;
 use crate::artifact::RunView;
 use crate::plot::Figure;
 use crate::stages;

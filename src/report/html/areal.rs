@@ -2,9 +2,9 @@
 
 use super::Report;
 use super::page::{number, optional, percent, table};
+use crate::report::About;
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::report::tables::About;
 use crate::stages;
 use crate::stages::realise::{AREAL_SURFACES, ArealRow};
 use maud::{Markup, html};

@@ -2,10 +2,11 @@
 
 use super::Report;
 use super::page::{absent, number, optional, percent, table};
+use crate::report::About;
 use crate::report::ReportError;
 use crate::report::figures::reference;
 use crate::report::read::rows;
-use crate::report::tables::{About, FrictionTable, friction_tables};
+use crate::report::tables::{FrictionTable, friction_tables};
 use crate::stages;
 use crate::stages::Stage;
 use crate::stages::areal::AREAL_SOLVES;
