@@ -215,6 +215,9 @@ pub enum StageError {
     /// A map that cannot be conditioned.
     #[error("{0} (ingest.maps)")]
     MapConditioning(#[from] crate::surface::map::condition::MapConditioningError),
+    /// A map that cannot be characterised.
+    #[error(transparent)]
+    Areal(#[from] crate::surface::map::ArealError),
     /// A map with a gap that is not filled.
     #[error("{0} (realise.longest_gap_mm)")]
     Gap(#[from] crate::surface::map::gaps::GapError),
@@ -386,6 +389,7 @@ impl HasKind for StageError {
             Self::SineFit { source, .. } => source.kind(),
             Self::Periodic(source) => source.kind(),
             Self::MapConditioning(source) => source.kind(),
+            Self::Areal(source) => source.kind(),
             Self::Gap(source) => source.kind(),
             Self::PeriodicMap(source) => source.kind(),
             Self::Rubber(source) => source.kind(),

@@ -149,6 +149,26 @@ mod tests {
         map: SynthMap,
     }
 
+    /// Other processors transform with other round-off, which the digit of the instrument takes away but for heights near
+    /// the middle between two digits.
+    #[test]
+    fn the_bundled_map_is_made_again() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scans/map/road.x3p");
+        let bundled = asperity::scans::file::read_file(path.as_ref()).unwrap().unwrap();
+        let map = SyntheticMap::bundled();
+        let made = map.generate("map").unwrap();
+        assert_eq!(bundled.heights.len(), made.heights.len());
+        let mut others = 0;
+        for (a, b) in bundled.heights.iter().zip(&made.heights) {
+            assert_eq!(a.is_nan(), b.is_nan());
+            if !a.is_nan() && a != b {
+                assert!((a - b).abs() < 1.5 * map.digit, "{a} {b}");
+                others += 1;
+            }
+        }
+        assert!(others < 10, "{others} heights differ");
+    }
+
     fn parameters(options: &[&str]) -> SyntheticMap {
         let words = ["map", "--out", "road.x3p"].iter().chain(options);
         Command::parse_from(words).map.parameters()

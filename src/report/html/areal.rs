@@ -2,10 +2,12 @@
 
 use super::Report;
 use super::page::{number, optional, percent, table};
+use super::scans::average_table;
 use crate::report::About;
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages;
+use crate::stages::characterise::AREAL_AVERAGES;
 use crate::stages::realise::{AREAL_SURFACES, ArealRow};
 use maud::{Markup, html};
 
@@ -16,12 +18,16 @@ impl Report<'_> {
 
     pub(super) fn areal(&self) -> Result<Markup, ReportError> {
         let surfaces = rows(self.run, AREAL_SURFACES)?.unwrap_or_default();
+        let averages = rows(self.run, AREAL_AVERAGES)?.unwrap_or_default();
         let sliding = About::of(self.run)?.sliding();
         Ok(html! {
             (self.doubt(&[stages::realise::STAGE, stages::areal::STAGE]))
             @if let Some(sliding) = sliding { p { (sliding) " The friction tables have this direction." } }
             (self.figure("direction")?)
             (self.figure("pressure-map")?)
+            @if !averages.is_empty() {
+                (average_table("Areal parameters of the maps, averages over the windows", &averages))
+            }
             (surface_table(&surfaces))
         })
     }

@@ -5,7 +5,7 @@ use super::page::{absent, number, optional, percent, table};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages;
-use crate::stages::characterise::{AVERAGES, PARAMETERS, ParametersRow};
+use crate::stages::characterise::{AVERAGES, AverageRow, PARAMETERS, ParametersRow};
 use crate::stages::ingest::{
     FAULTS, FaultRow, MAP_WINDOWS, MapRow, REPORT, ScanReportRow, WINDOWS, WindowRow,
 };
@@ -62,16 +62,29 @@ impl Report<'_> {
             (self.figure("heights")?)
             (self.doubt(&[stages::characterise::STAGE]))
             @if !averages.is_empty() {
-                (table("Roughness parameters, averages over the windows",
-                    &["parameter", "mean", "± 95 %", "standard deviation", "windows"], 1,
-                    averages.iter().map(|row| vec![
-                        row.parameter.clone(), number(row.mean, 4), optional(row.confidence_95, 2),
-                        optional(row.standard_deviation, 2), row.windows.to_string(),
-                    ])))
+                (average_table("Roughness parameters, averages over the windows", &averages))
             }
             @if !parameters.is_empty() { (parameter_table(&parameters)) }
         })
     }
+}
+
+/// Parameters of roughness as means over windows.
+pub(super) fn average_table(caption: &str, rows: &[AverageRow]) -> Markup {
+    table(
+        caption,
+        &["parameter", "mean", "± 95 %", "standard deviation", "windows"],
+        1,
+        rows.iter().map(|row| {
+            vec![
+                row.parameter.clone(),
+                number(row.mean, 4),
+                optional(row.confidence_95, 2),
+                optional(row.standard_deviation, 2),
+                row.windows.to_string(),
+            ]
+        }),
+    )
 }
 
 /// What became of the maps: the lines of the same files are counted beside them.

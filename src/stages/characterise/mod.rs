@@ -3,16 +3,22 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `maps` | maps over the plane: parameters of ISO 25178-2, correlation over direction, spectrum, anisotropy |
 //! | `rows` | the tables of the stage |
 //! | `spectrum` | the spectrum and what follows from it: bins, the isotropic spectrum, Hurst exponents, the check against the correlation |
 //! | `standards` | parameters of the standards: profile parameters, mean profile depth, texture levels |
 //! | `warnings` | what a user is told where numbers are left out |
 
+mod maps;
 mod rows;
 mod spectrum;
 mod standards;
 mod warnings;
 
+pub use maps::{
+    AREAL_AVERAGES, AREAL_CORRELATION, AREAL_DIRECTIONS, AREAL_PARAMETERS, AREAL_SPECTRUM,
+    ArealCorrelationRow, ArealDirectionRow, ArealParametersRow, ArealSpectrumRow,
+};
 pub use spectrum::{
     AGREEMENT, AgreementRow, HURST, HurstMethod, HurstRow, ISOTROPIC, IsotropicRow,
     LARGEST_DIFFERENCE_KEY, SPECTRUM, SpectrumRow,
@@ -20,7 +26,7 @@ pub use spectrum::{
 pub use standards::{DEPTH, DepthRow, PROFILE, ProfileDepth, ProfileRow, TEXTURE, TextureRow};
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::ingest::read_windows;
+use super::ingest::{MAPS, SCANS, read_maps, read_windows};
 use super::{Stage, StageError, keys};
 use crate::artifact::{Metadata, RunView};
 use crate::requirement::{InvalidRecipe, require};
@@ -62,9 +68,12 @@ static CONTRACT: Contract = Contract {
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let chain = request.chain()?;
     chain.ingest?;
-    let run =
-        |inputs: &Inputs, context: &mut Context| run(chain.characterise, &inputs.results, context);
-    Some(Planned::new(json!(chain.characterise), run).reading(super::ingest::SCANS))
+    let maps = chain.has_maps();
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(chain.characterise, maps, &inputs.results, context)
+    };
+    let planned = Planned::new(json!(chain.characterise), run).reading(SCANS);
+    Some(planned.reading_if(maps, MAPS))
 }
 
 /// Section `[characterise]` of a recipe.
@@ -235,6 +244,7 @@ pub fn length_in(metadata: &Metadata, key: &'static str) -> Result<Option<f64>, 
 /// [`StageError`]: a window without heights. What cannot be fitted is left out with a warning.
 pub fn run(
     parameters: &Characterise,
+    maps: bool,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
@@ -290,6 +300,16 @@ pub fn run(
         spectrum::agreement_rows(&mean_spectrum, &average, reliable, parameters.lags_per_decade);
     context.pending.write_table(AGREEMENT, &rows, &metadata)?;
     warnings.extend(missing.into_iter().chain(apart));
+    if maps {
+        context.check_interrupt()?;
+        let tables = maps::tables(parameters, read_maps(run)?)?;
+        context.pending.write_rows(AREAL_PARAMETERS, &tables.parameters)?;
+        context.pending.write_rows(AREAL_AVERAGES, &tables.averages)?;
+        context.pending.write_rows(AREAL_CORRELATION, &tables.correlation)?;
+        context.pending.write_rows(AREAL_SPECTRUM, &tables.spectrum)?;
+        context.pending.write_rows(AREAL_DIRECTIONS, &tables.directions)?;
+        warnings.extend(tables.warnings);
+    }
     Ok(warnings)
 }
 

@@ -2,6 +2,7 @@
 
 use super::StageError;
 use super::{AGREEMENT, DEPTH, HURST, ISOTROPIC, PROFILE, SPECTRUM, TEXTURE};
+use super::{AREAL_CORRELATION, AREAL_DIRECTIONS, AREAL_PARAMETERS, AREAL_SPECTRUM};
 use crate::artifact::{Row, SchemaVersion, Table};
 use crate::numerics::statistics::MeanEstimate;
 use crate::surface::correlation::HeightDifferenceCorrelation;
@@ -161,6 +162,10 @@ pub fn schemas() -> Vec<SchemaVersion> {
         PROFILE.schema(),
         DEPTH.schema(),
         TEXTURE.schema(),
+        AREAL_PARAMETERS.schema(),
+        AREAL_CORRELATION.schema(),
+        AREAL_SPECTRUM.schema(),
+        AREAL_DIRECTIONS.schema(),
     ]
 }
 

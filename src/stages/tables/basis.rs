@@ -137,6 +137,7 @@ mod tests {
     use super::super::average;
     use super::super::tests::curve;
     use super::*;
+    use crate::stages::realise::Method;
 
     fn basis(windows: Option<u32>, window_of: BTreeMap<(SurfaceKind, u32), String>) -> Basis {
         let error = ScanErrorRow {

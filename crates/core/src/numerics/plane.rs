@@ -159,6 +159,19 @@ impl Transform {
     }
 }
 
+/// The smallest product of 2, 3 and 5 from `least` on: the lengths at which transforms are fast.
+pub(crate) fn fast_length(least: usize) -> usize {
+    let is_smooth = |mut n: usize| {
+        for factor in [2, 3, 5] {
+            while n.is_multiple_of(factor) {
+                n /= factor;
+            }
+        }
+        n == 1
+    };
+    (least.max(1)..).find(|n| is_smooth(*n)).unwrap_or(least)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,6 +203,12 @@ mod tests {
                 approx::assert_abs_diff_eq!(*back / (nx * ny) as f64, *value, epsilon = 1e-14);
             }
         }
+    }
+
+    #[test]
+    fn fast_lengths_have_small_factors() {
+        let found: Vec<usize> = [0, 1, 7, 8, 11, 97, 1025].map(fast_length).into();
+        assert_eq!(found, [1, 1, 8, 8, 12, 100, 1080]);
     }
 
     #[test]

@@ -11,6 +11,7 @@
 
 use super::LineScan;
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::numerics::plane::fast_length;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex, num_complex::Complex};
 use std::collections::BTreeMap;
@@ -183,7 +184,7 @@ impl CorrelationPlan {
     pub fn new(points: usize, maximum_lag: usize) -> Self {
         let maximum_lag = maximum_lag.min(points.saturating_sub(1));
         // Padding by the largest lag keeps the wrap-around of the cyclic correlation beyond it.
-        let length = smooth_length(points + maximum_lag);
+        let length = fast_length(points + maximum_lag);
         let mut planner = RealFftPlanner::new();
         let (forward, inverse) =
             (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
@@ -300,24 +301,6 @@ fn direct_value(heights: &[f64], lag: usize) -> f64 {
         }
     }
     sum / pairs as f64
-}
-
-/// Smallest `2^a 3^b 5^c`, at least `minimum`: the lengths at which the FFT is fast.
-fn smooth_length(minimum: usize) -> usize {
-    let is_smooth = |n: usize| {
-        let mut rest = n;
-        for factor in [2_usize, 3, 5] {
-            while rest.is_multiple_of(factor) {
-                rest /= factor;
-            }
-        }
-        rest == 1
-    };
-    let mut length = minimum.max(1);
-    while !is_smooth(length) {
-        length += 1;
-    }
-    length
 }
 
 /// Correlations of scans, in parallel, in the order of the scans.

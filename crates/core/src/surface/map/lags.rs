@@ -12,7 +12,8 @@
 //! All are even in `s`, so that half of the plane is stored.
 
 use super::HeightMap;
-use super::transform::{invert_rows, smooth_length, transform_columns, transform_rows};
+use super::transform::{invert_rows, transform_columns, transform_rows};
+use crate::numerics::plane::fast_length;
 use crate::surface::CorrelationSample;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
@@ -44,7 +45,7 @@ impl LagPlane {
     pub fn of(map: &HeightMap, mean: f64, lags: [usize; 2], kind: PairMean) -> Self {
         let lags = [0, 1].map(|axis| lags[axis].min(map.points[axis] - 1));
         // Padding by the largest lag keeps what wraps around beyond it.
-        let length = [0, 1].map(|axis| smooth_length(map.points[axis] + lags[axis]));
+        let length = [0, 1].map(|axis| fast_length(map.points[axis] + lags[axis]));
         let valid = |n: usize| !map.heights[n].is_nan();
         let height = |n: usize| if valid(n) { map.heights[n] - mean } else { 0.0 };
         let mut fields = vec![

@@ -2,7 +2,7 @@
 
 use super::HeightMap;
 use crate::error_kind::{ErrorKind, HasKind};
-use crate::numerics::plane::Transform;
+use crate::numerics::plane::{Transform, fast_length};
 use crate::surface::Closure;
 use crate::surface::periodic::{blend_weight, blended_points};
 use rustfft::num_complex::Complex64;
@@ -112,7 +112,7 @@ impl PeriodicMap {
     pub fn grid(&self, per_wave: f64) -> [usize; 2] {
         self.periods.map(|period| {
             let least = (per_wave * period / self.shortest * (1.0 - ROUND_OFF)).ceil() as usize;
-            8 * smooth(least.div_ceil(8).max(2))
+            8 * fast_length(least.div_ceil(8).max(2))
         })
     }
 
@@ -161,7 +161,7 @@ pub(super) fn resolving(periods: [f64; 2], shortest: f64) -> [usize; 2] {
     periods.map(|period| {
         let highest = (period / shortest * (1.0 + ROUND_OFF)).floor() as usize;
         // One more than two on the shortest wave: its phase is known.
-        2 * smooth(highest + 1)
+        2 * fast_length(highest + 1)
     })
 }
 
@@ -173,19 +173,6 @@ pub(super) fn is_kept([kx, ky]: [f64; 2], periods: [f64; 2], shortest: f64) -> b
 /// The number of a coefficient, from `-n/2` to `n/2`.
 pub(super) fn signed(j: usize, n: usize) -> f64 {
     if 2 * j <= n { j as f64 } else { j as f64 - n as f64 }
-}
-
-/// The smallest product of 2, 3 and 5 from `least` on.
-fn smooth(least: usize) -> usize {
-    let is_smooth = |mut n: usize| {
-        for factor in [2, 3, 5] {
-            while n.is_multiple_of(factor) {
-                n /= factor;
-            }
-        }
-        n == 1
-    };
-    (least.max(1)..).find(|n| is_smooth(*n)).unwrap_or(least)
 }
 
 /// Coefficients of a field on a grid, as a [`Transform`] leaves them.

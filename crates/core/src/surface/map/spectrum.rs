@@ -18,7 +18,7 @@ use crate::surface::PowerSpectrum;
 use crate::surface::spectrum::{Route, Window};
 use rustfft::num_complex::Complex64;
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Width in degrees of the sectors of [`ArealSpectrum::sectors`].
 pub const SECTOR: usize = 10;
@@ -79,7 +79,7 @@ impl ArealSpectrum {
     /// Periodogram of the heights about `mean` (m), missing points at the mean: for directions only.
     pub(super) fn about(map: &HeightMap, mean: f64, window: Window) -> Self {
         let [nx, ny] = map.points;
-        let weights = map.points.map(|points| weights(window, points));
+        let weights = map.points.map(|points| window.weights(points));
         let rows = transform_rows(map.points, nx, |n| {
             let z = map.heights[n];
             if z.is_nan() { 0.0 } else { (z - mean) * weights[0][n % nx] * weights[1][n / nx] }
@@ -239,16 +239,6 @@ impl ArealSpectrum {
 /// Direction of a wave in degrees, 0 to 180.
 fn direction(qx: f64, qy: f64) -> f64 {
     qy.atan2(qx).to_degrees().rem_euclid(180.0)
-}
-
-/// Weights of a window, see [`Window`].
-fn weights(window: Window, points: usize) -> Vec<f64> {
-    let weight = |i: usize| match window {
-        Window::None => 1.0,
-        Window::Hann => (PI * i as f64 / points as f64).sin().powi(2),
-        Window::Welch => 1.0 - (2.0 * (i as f64 + 0.5) / points as f64 - 1.0).powi(2),
-    };
-    (0..points).map(weight).collect()
 }
 
 #[cfg(test)]

@@ -109,16 +109,3 @@ pub(super) fn invert_rows(
         },
     );
 }
-
-/// Smallest `2^a 3^b 5^c`, at least `minimum`: the lengths at which the transform is fast.
-pub(super) fn smooth_length(minimum: usize) -> usize {
-    let rest = |n: usize| {
-        [2_usize, 3, 5].into_iter().fold(n, |mut rest, factor| {
-            while rest.is_multiple_of(factor) {
-                rest /= factor;
-            }
-            rest
-        })
-    };
-    (minimum.max(1)..).find(|&n| rest(n) == 1).unwrap_or(minimum)
-}

@@ -33,25 +33,30 @@ impl Window {
         }
     }
 
-    /// Multiplies heights by the window and returns its mean square.
-    pub(super) fn apply(self, heights: &mut [f64]) -> f64 {
-        let points = heights.len() as f64;
+    /// Its weights at so many points.
+    pub(in crate::surface) fn weights(self, points: usize) -> Vec<f64> {
+        let count = points as f64;
         let weight = |i: usize| match self {
             Self::None => 1.0,
             // (1 - cos 2a) / 2 = sin^2 a
-            Self::Hann => (PI * i as f64 / points).sin().powi(2),
-            Self::Welch => 1.0 - (2.0 * (i as f64 + 0.5) / points - 1.0).powi(2),
+            Self::Hann => (PI * i as f64 / count).sin().powi(2),
+            Self::Welch => 1.0 - (2.0 * (i as f64 + 0.5) / count - 1.0).powi(2),
         };
+        (0..points).map(weight).collect()
+    }
+
+    /// Multiplies heights by the window and returns its mean square.
+    pub(super) fn apply(self, heights: &mut [f64]) -> f64 {
         if self == Self::None {
             return 1.0;
         }
+        let points = heights.len();
         let mut squares = 0.0;
-        for (i, height) in heights.iter_mut().enumerate() {
-            let weight = weight(i);
+        for (height, weight) in heights.iter_mut().zip(self.weights(points)) {
             *height *= weight;
             squares += weight * weight;
         }
-        squares / points
+        squares / points as f64
     }
 
     /// By how much the window raises the variance of a mean over many neighbouring wavenumbers,
