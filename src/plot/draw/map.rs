@@ -59,7 +59,9 @@ pub(super) fn draw(
     let y = coordinate(0.0..map.size[1], panel.y.scale);
     let beside = room_beside(&y.ticks);
     let left = MARGIN_LEFT + beside;
-    let place = area.clone().shrink((MARGIN_LEFT, TOP), (beside + width, height + BELOW));
+    // A flat map is at half the height of its colour bar.
+    let top = TOP + (plot - height) / 2;
+    let place = area.clone().shrink((MARGIN_LEFT, top), (beside + width, height + BELOW));
     let mut chart = ChartBuilder::on(&place)
         .x_label_area_size(BELOW)
         .y_label_area_size(beside)
