@@ -178,6 +178,23 @@ pub fn read_arrays(
     reader.datasets(&header)
 }
 
+/// Hands over the arrays of a file one by one, sorted by name, for files that are too large to be held as a whole. What was
+/// handed over counts only if no error is returned: the digest of the content is known at the end.
+///
+/// # Errors
+/// Those of [`read_arrays`].
+pub fn visit_arrays(
+    path: &Path,
+    schema: &str,
+    version: u32,
+    each: impl FnMut(ArrayDataset),
+) -> Result<(), ArtifactError> {
+    let reader = Reader::open(path)?;
+    let header = reader.header()?;
+    ArtifactError::check_schema(path, (&header.schema, header.version), (schema, version))?;
+    reader.visit(&header, each)
+}
+
 /// Schema and datasets of any file of arrays, after its content digest has been checked.
 ///
 /// # Errors

@@ -55,7 +55,7 @@ mod tests;
 mod view;
 
 pub use arrays::{ArrayDataset, ArraysInfo, Attribute, DatasetInfo, Storage};
-pub use arrays::{arrays_info, read_arrays, write_arrays};
+pub use arrays::{arrays_info, read_arrays, visit_arrays, write_arrays};
 pub use columns::{Column, ColumnType, Row, columns};
 pub use digest::{Digest, Digesting};
 pub use error::ArtifactError;

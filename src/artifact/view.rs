@@ -11,7 +11,7 @@ use super::own;
 use super::table::{decode_rows, read_bytes};
 use super::{
     ArrayDataset, ArrayFile, ArtifactError, Digest, Manifest, Metadata, Output, ResultFile, Row,
-    SOLVES_FOLDER, Table, read_arrays, table_info,
+    SOLVES_FOLDER, Table, read_arrays, table_info, visit_arrays,
 };
 
 /// The results in an output folder, for reading; others may be writing at the same time.
@@ -128,6 +128,20 @@ impl RunView {
         let output = self.finished_output(arrays.file)?;
         self.verify_bytes(arrays.file.stage, &output)?;
         read_arrays(&self.path_of(arrays), arrays.schema, arrays.version)
+    }
+
+    /// Hands over the arrays of a file of a result one by one, see [`visit_arrays`].
+    ///
+    /// # Errors
+    /// Those of [`RunView::read_arrays`].
+    pub fn visit_arrays(
+        &self,
+        arrays: ArrayFile,
+        each: impl FnMut(ArrayDataset),
+    ) -> Result<(), ArtifactError> {
+        let output = self.finished_output(arrays.file)?;
+        self.verify_bytes(arrays.file.stage, &output)?;
+        visit_arrays(&self.path_of(arrays), arrays.schema, arrays.version, each)
     }
 
     /// Fails if a new result of the stage would have to replace what asperity did not write.

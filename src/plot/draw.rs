@@ -1,10 +1,12 @@
 //! Panels as SVG, by plotters: the only place that draws.
 
 mod legend;
+mod map;
 mod marks;
 
 use super::FigureError;
 use super::panel::{Axis, Colour, Panel, Scale};
+use super::raster::Picture;
 use super::ticks::Ticks;
 use legend::Legend;
 use plotters::coord::Shift;
@@ -93,26 +95,41 @@ pub(super) fn svg(panels: &[Panel]) -> Result<String, FigureError> {
         return Err(FigureError("it has no panel".into()));
     }
     let mut svg = String::new();
+    let mut pictures = vec![];
     let draw = || -> Drawn {
         let size = (WIDTH, heights.iter().sum());
         let mut rest = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         rest.fill(&WHITE)?;
         for (panel, height) in panels.iter().zip(heights) {
             let (area, below) = rest.split_vertically(height);
-            draw_panel(&area, panel)?;
+            match panel.map() {
+                Some(map) => pictures.extend(map::draw(&area, panel, map)?),
+                None => draw_panel(&area, panel)?,
+            }
             rest = below;
         }
         rest.present()?;
         Ok(())
     };
     draw().map_err(|error| FigureError(error.to_string()))?;
+    let svg = with_pictures(&svg, &pictures);
     let height: u32 = panels.iter().map(height).sum();
     let drawn = format!("width=\"{WIDTH}\" height=\"{height}\"");
     let shown = format!("width=\"{}\" height=\"{}\"", WIDTH / FINE, height / FINE);
     Ok(svg.replacen(&drawn, &shown, 1))
 }
 
+/// Plotters draws no pictures: they are put over what it has drawn.
+fn with_pictures(svg: &str, pictures: &[Picture]) -> String {
+    let Some((content, end)) = svg.rsplit_once("</svg>") else { return svg.to_owned() };
+    let elements: String = pictures.iter().map(Picture::element).collect();
+    format!("{content}{elements}</svg>{end}")
+}
+
 fn height(panel: &Panel) -> u32 {
+    if let Some(map) = panel.map() {
+        return map::height(map) + GAP;
+    }
     HEIGHT + Legend::of(panel).height() + GAP
 }
 

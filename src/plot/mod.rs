@@ -2,17 +2,21 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `panel` | the description: [`Panel`], [`Axis`], [`Series`], [`Mark`] |
+//! | `colours` | colours of values, with a lightness that grows evenly |
+//! | `panel` | the description: [`Panel`], [`Axis`], [`Series`], [`Mark`], [`Map`] |
 //! | `draw` | the description as SVG; no other module draws |
 //! | `ticks` | where axes have ticks and what stands at them |
 //! | `png` | SVG to PNG, with the font of the program |
+//! | `raster` | pictures of maps and colour bars, as elements of an SVG |
 
+mod colours;
 mod draw;
 mod panel;
 mod png;
+mod raster;
 mod ticks;
 
-pub use panel::{Axis, Colour, Mark, Panel, Points, Scale, Series};
+pub use panel::{Axis, Colour, Map, Mark, Panel, Points, Scale, Series};
 pub use png::png;
 pub(crate) use ticks::scientific;
 

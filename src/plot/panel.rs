@@ -118,6 +118,27 @@ pub enum Mark {
     VerticalLine(f64),
     /// A dotted line over the full width at a y.
     HorizontalLine(f64),
+    /// A map in colours. It is drawn alone in its panel, at equal scales along both axes.
+    Map(Map),
+}
+
+/// Values on a rectangle, to be shown as colours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// Cells along x and y.
+    pub cells: [usize; 2],
+    /// Lengths along x and y, in the unit of both axes.
+    pub size: [f64; 2],
+    /// That unit, for the scale bar.
+    pub unit: &'static str,
+    /// Values row by row from the lowest y up, x fastest. NaN is drawn in light grey.
+    pub values: Vec<f64>,
+    /// Axis of the colour bar.
+    pub colours: Axis,
+    /// Direction of an arrow below the map, in degrees from x towards y, and what it says.
+    pub arrow: Option<(f64, String)>,
+    /// Lines of text below the map.
+    pub notes: Vec<String>,
 }
 
 impl Series {
@@ -129,6 +150,16 @@ impl Series {
     /// A series that the legend does not name.
     pub fn unnamed(colour: Colour, mark: Mark) -> Self {
         Self { label: None, colour, mark }
+    }
+}
+
+impl Panel {
+    /// The map that fills the panel, if it has one.
+    pub(super) fn map(&self) -> Option<&Map> {
+        self.series.iter().find_map(|series| match &series.mark {
+            Mark::Map(map) => Some(map),
+            _ => None,
+        })
     }
 }
 
@@ -148,6 +179,7 @@ impl Mark {
             Self::Span(from, to) => vec![*from, *to],
             Self::VerticalLine(x) => vec![*x],
             Self::HorizontalLine(_) => vec![],
+            Self::Map(map) => vec![0.0, map.size[0]],
         }
     }
 
@@ -166,6 +198,7 @@ impl Mark {
             Self::Histogram(bars) => bars.iter().map(|bar| bar.2).collect(),
             Self::Rug(_) | Self::Span(..) | Self::VerticalLine(_) => vec![],
             Self::HorizontalLine(y) => vec![*y],
+            Self::Map(map) => vec![0.0, map.size[1]],
         }
     }
 }

@@ -27,7 +27,31 @@ pub fn png(svg: &str) -> Result<Vec<u8>, FigureError> {
     picture.fill(tiny_skia::Color::WHITE);
     let enlarge = tiny_skia::Transform::from_scale(ENLARGEMENT, ENLARGEMENT);
     resvg::render(&tree, enlarge, &mut picture.as_mut());
+    draw_pictures(tree.root(), enlarge, &mut picture)?;
     picture.encode_png().map_err(|error| FigureError(error.to_string()))
+}
+
+/// Draws the PNG pictures of a group over the rest: resvg draws them with decoders of more formats alone.
+fn draw_pictures(
+    group: &usvg::Group,
+    enlarge: tiny_skia::Transform,
+    onto: &mut tiny_skia::Pixmap,
+) -> Result<(), FigureError> {
+    for node in group.children() {
+        match node {
+            usvg::Node::Group(group) => draw_pictures(group, enlarge, onto)?,
+            usvg::Node::Image(image) => {
+                let usvg::ImageKind::PNG(bytes) = image.kind() else { continue };
+                let pixels = tiny_skia::Pixmap::decode_png(bytes)
+                    .map_err(|error| FigureError(error.to_string()))?;
+                let place = enlarge.pre_concat(image.abs_transform());
+                let paint = tiny_skia::PixmapPaint::default();
+                onto.draw_pixmap(0, 0, pixels.as_ref(), &paint, place, None);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -51,6 +75,22 @@ mod tests {
         };
         assert!(text("µ 10⁻³") > 100);
         assert!(text("friction coefficient") > text("friction"));
+    }
+
+    #[test]
+    fn pictures_are_drawn() {
+        let mut black = tiny_skia::Pixmap::new(1, 1).unwrap();
+        black.fill(tiny_skia::Color::BLACK);
+        let bytes = base64::Engine::encode(
+            &base64::engine::general_purpose::STANDARD,
+            black.encode_png().unwrap(),
+        );
+        let picture = format!(
+            "<image x=\"10\" y=\"5\" width=\"20\" height=\"10\" preserveAspectRatio=\"none\" \
+             href=\"data:image/png;base64,{bytes}\"/>"
+        );
+        // 40 by 20 pixels of the enlarged drawing.
+        assert_eq!(dark_pixels(&picture), 800);
     }
 
     #[test]

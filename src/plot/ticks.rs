@@ -31,6 +31,11 @@ impl Ticks {
         }
     }
 
+    /// No ticks at all.
+    pub(super) fn none() -> Self {
+        Self { labelled: vec![], minor: vec![], scale: Scale::Linear, decimals: 0, plain: true }
+    }
+
     fn linear(range: &Range<f64>) -> Self {
         let step = round_step((range.end - range.start) / WANTED);
         let decimals = (-step.log10() - 1e-9).ceil().max(0.0) as usize;
@@ -84,6 +89,16 @@ fn round_step(wanted: f64) -> f64 {
     let power = 10_f64.powf(wanted.log10().floor());
     let factor = [1.0, 2.0, 5.0, 10.0].into_iter().find(|factor| factor * power >= wanted * 0.999);
     factor.unwrap_or(10.0) * power
+}
+
+/// 1, 2 or 5 times a power of ten, not above `most`.
+pub(super) fn round_length(most: f64) -> f64 {
+    let power = most.log10().floor() as i32;
+    // Division keeps 0.2 what it is written as.
+    let times = |factor: f64| {
+        if power < 0 { factor / 10_f64.powi(-power) } else { factor * 10_f64.powi(power) }
+    };
+    [5.0, 2.0].into_iter().map(times).find(|length| *length <= most).unwrap_or(times(1.0))
 }
 
 fn multiples(step: f64, range: &Range<f64>) -> Vec<f64> {
@@ -167,6 +182,12 @@ mod tests {
             ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰", "10³", "10⁶"]
         );
         assert_eq!(scientific(-2.5e-6), "−2.5×10⁻⁶");
+    }
+
+    #[test]
+    fn lengths_of_scale_bars_are_round() {
+        let lengths = [0.24, 1.6, 4.9, 5.0, 0.0125].map(round_length);
+        assert_eq!(lengths, [0.2, 1.0, 2.0, 5.0, 0.01]);
     }
 
     #[test]

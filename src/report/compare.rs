@@ -1,7 +1,8 @@
 //! Which of two runs has more friction, with the interval of the difference.
 
+use super::About;
 use super::ReportError;
-use super::tables::{About, significant};
+use super::tables::significant;
 use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};

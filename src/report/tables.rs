@@ -1,7 +1,7 @@
 //! Friction tables in the layout of the published ones: contact area in the first column, one
 //! column per realisation, their average.
 
-use crate::artifact::{ArtifactError, RunView};
+use super::About;
 use crate::stages::bem::Given;
 use crate::stages::realise::SurfaceKind;
 use crate::stages::tables::{ComparisonRow, CorrectionRow, FrictionRow, Model};
@@ -49,51 +49,17 @@ pub(super) fn significant(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// What all tables of a run have in common.
-#[derive(Debug, Clone, PartialEq)]
-pub struct About {
-    /// Name of the rubber.
-    pub rubber: String,
-    /// Temperature in °C to which it was shifted, if it was.
-    pub temperature_c: Option<f64>,
-    /// Relative accuracy that the recipe asks for, if it does.
-    pub tolerance: Option<f64>,
-}
-
-impl About {
-    /// From the parameters with which a run solved its contacts.
-    ///
-    /// # Errors
-    /// [`ArtifactError`] if the manifest of the stage is damaged.
-    pub fn of(run: &RunView) -> Result<Self, ArtifactError> {
-        let parameters = run.stage_manifest("bem")?.map(|manifest| manifest.parameters);
-        let parameters = parameters.unwrap_or_default();
-        Ok(Self {
-            rubber: parameters["rubber"]["name"].as_str().unwrap_or("unknown").to_owned(),
-            temperature_c: parameters["temperature_c"].as_f64(),
-            tolerance: parameters["average_tolerance"].as_f64(),
-        })
-    }
-}
-
-impl About {
-    /// The rubber and its temperature: `rubber S100 at 20 °C`.
-    pub fn material(&self) -> String {
-        let temperature = self.temperature_c.map(|celsius| format!(" at {celsius} °C"));
-        format!("rubber {}{}", self.rubber, temperature.unwrap_or_default())
-    }
-}
-
 impl FrictionTable {
     /// What the table holds, in one line: all that its numbers depend on.
     pub fn caption(&self, about: &About) -> String {
         let tolerance = about.tolerance.map(|tolerance| format!(", tolerance {tolerance}"));
         format!(
-            "Friction coefficient over {}, model {}, {}, {} mm/s{}, {}{}, {}, asperity {}",
+            "Friction coefficient over {}, model {}, {}, {} mm/s{}{}, {}{}, {}, asperity {}",
             self.in_order("contact area fraction", "mean pressure")[0],
             self.model,
             self.road(),
             self.speed_mm_s,
+            self.direction(about),
             self.other_condition(),
             self.basis(),
             tolerance.unwrap_or_default(),
@@ -112,6 +78,12 @@ impl FrictionTable {
         };
         let shortest = significant(first.shortest_wavelength_mm);
         format!("{}{windows}, waves from {shortest} mm", self.kind)
+    }
+
+    /// Direction of sliding, where the surfaces are rough in both.
+    fn direction(&self, about: &About) -> String {
+        let angle = about.angle_deg.filter(|_| self.kind.method.is_areal());
+        angle.map_or(String::new(), |angle| format!(" at {angle}° from x"))
     }
 
     /// Range of what is not given.
@@ -338,7 +310,7 @@ mod tests {
     use serde_json::json;
 
     fn about(rubber: &str) -> About {
-        About { rubber: rubber.into(), temperature_c: None, tolerance: None }
+        About { rubber: rubber.into(), temperature_c: None, tolerance: None, angle_deg: None }
     }
 
     fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
@@ -390,7 +362,12 @@ mod tests {
         let caption = text.lines().find(|line| line.starts_with("\\caption")).unwrap();
         assert!(caption.contains("\\% ") && caption.ends_with('}'), "{caption}");
         assert!(!text.contains('\u{1b}'));
-        let all = About { rubber: "x".into(), temperature_c: Some(-10.0), tolerance: Some(0.01) };
+        let all = About {
+            rubber: "x".into(),
+            temperature_c: Some(-10.0),
+            tolerance: Some(0.01),
+            angle_deg: None,
+        };
         assert_eq!(
             tables[0].caption(&all),
             format!(

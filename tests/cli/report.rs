@@ -189,10 +189,12 @@ fn every_figure_is_drawn_as_svg_and_png() {
     let campaign = finished();
     let list = outcome(&campaign, "plot --list").result();
     let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(names.len(), 17);
+    assert_eq!(names.len(), 19);
     for name in names {
-        // No measured profiles, one speed, no published table, no microscale, no study.
-        if ["methods", "speed", "comparison", "correction", "study"].contains(&name) {
+        // No measured profiles, one speed, no published table, no microscale, no maps, no study.
+        let absent =
+            ["methods", "speed", "comparison", "correction", "pressure-map", "direction", "study"];
+        if absent.contains(&name) {
             let message = outcome(&campaign, &format!("plot {name} out")).error(2);
             assert!(message.contains("it needs"), "{message}");
             continue;
@@ -215,4 +217,110 @@ fn every_figure_is_drawn_as_svg_and_png() {
         unknown.contains("there is no figure `fiction`; did you mean `friction`?"),
         "{unknown}"
     );
+}
+
+/// A finished run of a small map: two of its windows, slid over in two directions.
+fn finished_map() -> Campaign {
+    let campaign = Campaign::new();
+    let synth = "synth map --out map.x3p --length-mm 4.8 --spacing-um 50 --missing-fraction 0";
+    outcome(&campaign, synth).result();
+    let recipe = r#"title = "Small map"
+[ingest]
+scans = ["map.x3p"]
+map_lines = "rows"
+map_line_step = 32
+[ingest.conditioning]
+form = "slope"
+[ingest.maps]
+window_length_mm = [2.4, 4.8]
+form = "plane"
+[approximate]
+waves = [2]
+shortest_wavelength_mm = 0.6
+[realise]
+methods = ["measured", "random-phase"]
+realisations = 2
+areal_realisations = 2
+periodic = "blend"
+seed = 1
+[bem]
+rubber = "rubber.toml"
+speeds_mm_s = [10.0]
+area_fractions = [0.05, 0.2]
+points_per_shortest_wavelength = 16
+[areal]
+angles_deg = [0.0, 90.0]
+field_area_fractions = [0.2]
+points_per_shortest_wavelength = 8
+"#;
+    campaign.write("recipe.toml", recipe);
+    outcome(&campaign, RUN).result();
+    campaign
+}
+
+/// Texts of a figure in their order.
+fn texts(svg: &str) -> Vec<String> {
+    let after = svg.split("<text").skip(1);
+    let text =
+        |part: &str| part.split_once('>')?.1.split_once('<').map(|text| text.0.trim().to_owned());
+    after.filter_map(text).collect()
+}
+
+#[test]
+fn maps_have_pictures_of_their_contacts() {
+    let campaign = finished_map();
+    let svg = outcome(&campaign, "plot pressure-map out").result();
+    // Pressure and patches, each with its colour bar.
+    assert_eq!(elements(&svg, "image"), 4);
+    assert!(svg.len() < 200_000, "{}", svg.len());
+    let shown = texts(&svg);
+    let has = |start: &str| shown.iter().any(|text| text.starts_with(start));
+    for text in [
+        "Pressure, measured maps, realisation 1, 10 mm/s",
+        "Patches, measured maps, realisation 1, 10 mm/s",
+        "contact pressure / MPa",
+        "area of the patch / mm²",
+        "0.5 mm",
+        "the rubber slides, 0° from x",
+        "mean pressure 0.",
+        "waves from 0.600 mm, rubber tread",
+        "the largest has",
+    ] {
+        assert!(has(text), "{text}: {shown:?}");
+    }
+    assert!(shown.iter().any(|text| text.contains("contact patch")), "{shown:?}");
+    assert_eq!(svg, outcome(&campaign, "plot pressure-map out").result());
+    outcome(&campaign, "plot pressure-map out --to map.png").result();
+
+    let svg = outcome(&campaign, "plot direction out").result();
+    let shown = texts(&svg);
+    // Of 0.05 and 0.2 the former is nearer to 5 %.
+    assert!(shown.contains(&"10 mm/s, Ac/A0 = 0.05, rubber tread".to_owned()), "{shown:?}");
+    assert!(shown.contains(&"measured maps, mean of 2, 95 %".to_owned()), "{shown:?}");
+    assert!(shown.contains(&"maps, random phases, mean of 2, 95 %".to_owned()), "{shown:?}");
+}
+
+#[test]
+fn a_report_tells_maps_from_profiles() {
+    let campaign = finished_map();
+    let page = report(&campaign);
+    for text in [
+        "<section id=\"areal\"",
+        "id=\"figure-pressure-map\"",
+        "id=\"figure-direction\"",
+        "1 height map was kept beside the lines, with 2 of 2 windows.",
+        "measured maps of 2 windows, waves from 0.6000 mm, 10 mm/s at 0° from x",
+        "Areal surfaces, made periodic</caption>",
+        "contacts of areal surfaces took",
+        "the rubber slides at 0° from x, the rows of the maps",
+        "its ratio to that of the measured profiles</caption>",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    // Profiles have no direction.
+    assert!(!page.contains("measured profiles of 3 windows, waves from 0.6000 mm, 10 mm/s at"));
+    let links: Vec<&str> = page.split("href=\"").skip(1).collect();
+    assert!(links.iter().all(|link| link.starts_with('#') || link.starts_with("data:")));
+    assert!(!page.contains("NaN") && !page.contains("inf<"));
+    assert_eq!(page, report(&campaign));
 }

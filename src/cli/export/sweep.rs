@@ -65,7 +65,12 @@ impl Export {
                 .filter(|row| self.chosen(row))
                 .collect();
             let SweepFrictionRow { rubber, temperature_c, .. } = &rows[0];
-            let about = About { rubber: rubber.clone(), temperature_c: *temperature_c, tolerance };
+            let about = About {
+                rubber: rubber.clone(),
+                temperature_c: *temperature_c,
+                tolerance,
+                angle_deg: None,
+            };
             // Writing to a string cannot fail.
             let _ = write!(text, "{}", one(&title(&rows[0]), &friction_tables(&friction), &about));
         }

@@ -93,6 +93,8 @@ pub(super) fn draw(
             let at = panel.y.coordinate(*at);
             broken(chart, at.map(|at| vec![(x.start, at), (x.end, at)]), DOTTED, style)?;
         }
+        // Fills a panel of its own, see `map`.
+        Mark::Map(_) => {}
     }
     Ok(())
 }
@@ -157,6 +159,7 @@ pub(super) fn sample(area: &Area, series: &Series, (x, y): (i32, i32), width: i3
         Mark::Rug(_) => {
             area.draw(&PathElement::new([(middle.0, y - HALF / 2), (middle.0, y + HALF)], style))?;
         }
+        Mark::Map(_) => {}
         Mark::Band(_) => area.draw(&Rectangle::new(block, colour.mix(BAND).filled()))?,
         Mark::Span(..) => area.draw(&Rectangle::new(block, colour.mix(SPAN).filled()))?,
         Mark::Histogram(_) => area.draw(&Rectangle::new(block, colour.mix(BAR).filled()))?,

@@ -5,7 +5,8 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::stages::bem::SOLVES;
+use crate::stages::areal::AREAL_SOLVES;
+use crate::stages::bem::{Given, SOLVES};
 use crate::stages::fem::{FEM_SOLVES, FemSolveRow};
 use crate::stages::micro::SAMPLES;
 use crate::stages::multilevel;
@@ -20,6 +21,10 @@ pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let friction = rows(run, FRICTION)?.unwrap_or_default();
     let half_space: Vec<FrictionRow> =
         friction.into_iter().filter(|row| row.model == Model::Bem).collect();
+    // Values at given pressures lie between those at given areas, with other errors: one line cannot have both.
+    let of_areas = half_space.iter().any(|row| row.given == Given::Area);
+    let half_space: Vec<FrictionRow> =
+        half_space.into_iter().filter(|row| !of_areas || row.given == Given::Area).collect();
     let tables = grouped(&half_space, |row| (row.kind, speed_key(row.speed_mm_s)));
     panels.extend(tables.into_values().filter_map(|rows| parts(&rows)));
     let caption = "Wall time of every contact against the estimated relative error of its friction \
@@ -31,6 +36,7 @@ pub(super) fn accuracy(run: &RunView) -> Result<Option<Figure>, ReportError> {
 
 fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
     let bem = rows(run, SOLVES)?.unwrap_or_default();
+    let areal = rows(run, AREAL_SOLVES)?.unwrap_or_default();
     let micro = rows(run, SAMPLES)?.unwrap_or_default();
     let fem = rows(run, FEM_SOLVES)?.unwrap_or_default();
     let multilevel = rows(run, multilevel::FEM_SOLVES)?.unwrap_or_default();
@@ -39,6 +45,9 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
         (error.is_finite() && error > LEAST_ERROR && seconds > 0.0).then_some((error, seconds))
     };
     let of_bem = bem.iter().filter_map(|row| {
+        relative(row.discretisation_error?, row.friction_coefficient, row.seconds)
+    });
+    let of_areal = areal.iter().filter_map(|row| {
         relative(row.discretisation_error?, row.friction_coefficient, row.seconds)
     });
     let of_micro = micro.iter().filter_map(|row| {
@@ -51,8 +60,9 @@ fn solves(run: &RunView) -> Result<Option<Panel>, ReportError> {
     };
     let of_fem = fem.iter().filter_map(of_all_waves);
     let of_multilevel = multilevel.iter().filter_map(of_all_waves);
-    let kinds: [(&str, usize, Points); 4] = [
+    let kinds: [(&str, usize, Points); 5] = [
         ("half-space, error by the grid", 0, of_bem.collect()),
+        ("areal half-space, error by the grid", 3, of_areal.collect()),
         ("microscale, force against heat", 1, of_micro.collect()),
         ("fem, force against heat", 2, of_fem.collect()),
         ("multilevel, force against heat", 4, of_multilevel.collect()),

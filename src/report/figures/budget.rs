@@ -4,9 +4,9 @@ use super::friction::{abscissa_of, axis};
 use super::{grouped, speed_key};
 use crate::artifact::RunView;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
+use crate::report::About;
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::report::tables::About;
 use crate::stages::tables::{BUDGET, BudgetRow, Part};
 use std::collections::BTreeMap;
 

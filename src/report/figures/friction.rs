@@ -2,16 +2,19 @@
 
 use super::{full_heading, grouped, heading};
 use crate::artifact::RunView;
-use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
+use crate::report::About;
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::report::tables::{About, significant};
+use crate::report::tables::significant;
 use crate::stages::bem::Given;
 use crate::stages::realise::SurfaceKind;
 use crate::stages::tables::{COMPARISON, ComparisonRow, FRICTION, FrictionRow, Model};
 
 const AREA: &str = "contact area fraction Ac/A0";
 const PRESSURE: &str = "mean pressure p / MPa";
+/// Distance between series at one area or pressure, as a share of it.
+const BESIDE: f64 = 0.04;
 pub(super) const FRICTION_LABEL: &str = "friction coefficient µ";
 
 /// Friction of a run, see [`friction_figure`].
@@ -34,18 +37,10 @@ pub fn friction_figure(rows: &[FrictionRow], about: &About) -> Figure {
         series,
     };
     let panels = if one_model && tables.len() > 1 {
-        let of_one = tables.chunk_by(|a, b| a[0].given == b[0].given).map(|tables| {
-            let series = tables.iter().enumerate().flat_map(|(number, table)| {
-                let shortest = significant(table[0].shortest_wavelength_mm);
-                let name =
-                    format!("{} from {shortest} mm, {} mm/s", table[0].kind, table[0].speed_mm_s);
-                curve(table, &name, Colour::Nth(number), false)
-            });
-            panel(
-                format!("Model {}, {}", rows[0].model, about.material()),
-                tables[0][0].given,
-                series.collect(),
-            )
+        let of_one = one_model_panels(&tables).into_iter().map(|(speed, tables)| {
+            let own = speed.map_or(String::new(), |speed| format!("{speed} mm/s, "));
+            let title = format!("Model {}, {own}{}", rows[0].model, about.material());
+            panel(title, tables[0][0].given, of_one_model(&tables, speed))
         });
         of_one.collect()
     } else {
@@ -58,13 +53,50 @@ pub fn friction_figure(rows: &[FrictionRow], about: &About) -> Figure {
         });
         compared.collect()
     };
+    let areal = rows.iter().any(|row| row.kind.method.is_areal());
+    let sliding = about.sliding().filter(|_| areal);
     Figure {
-        caption:
-            "Friction coefficient over contact area fraction or mean pressure, averaged over the realisations; \
-                  bands are 95 % confidence intervals of the mean, pale points single realisations."
-                .into(),
+        caption: format!(
+            "Friction coefficient over contact area fraction or mean pressure, averaged over the realisations; bands are \
+             95 % confidence intervals of the mean, pale points single realisations. Lines that would all be at one area \
+             or pressure stand beside each other there.{}",
+            sliding.map_or(String::new(), |text| format!(" {text}"))
+        ),
         panels,
     }
+}
+
+/// The tables of one panel, whose title may name their speed.
+fn of_one_model(tables: &[Rows], speed: Option<f64>) -> Vec<Series> {
+    let place = only_place(&tables.concat());
+    let of_table = tables.iter().enumerate().flat_map(|(number, table)| {
+        let shortest = significant(table[0].shortest_wavelength_mm);
+        let own = match speed {
+            Some(_) => String::new(),
+            None => format!(", {} mm/s", table[0].speed_mm_s),
+        };
+        let name = format!("{} from {shortest} mm{own}", table[0].kind);
+        let series = curve(table, &name, Colour::Nth(number), false);
+        beside(series, (number, tables.len()), place)
+    });
+    of_table.collect()
+}
+
+/// Rows of one kind of surfaces at one speed.
+type Rows<'a> = Vec<&'a FrictionRow>;
+
+/// The tables of each panel where there is one model: of all speeds, or where these are more than there are colours, of the
+/// speed that is named.
+fn one_model_panels<'a>(tables: &[Rows<'a>]) -> Vec<(Option<f64>, Vec<Rows<'a>>)> {
+    let of_given = tables.chunk_by(|a, b| a[0].given == b[0].given);
+    if of_given.clone().all(|tables| tables.len() <= Colour::COUNT) {
+        return of_given.map(|tables| (None, tables.to_vec())).collect();
+    }
+    let key = |table: &Rows| (table[0].given, super::speed_key(table[0].speed_mm_s));
+    let mut sorted = tables.to_vec();
+    sorted.sort_by_key(key);
+    let of_speed = sorted.chunk_by(|a, b| key(a) == key(b));
+    of_speed.map(|tables| (Some(tables[0][0].speed_mm_s), tables.to_vec())).collect()
 }
 
 /// The axis of what friction is given for.
@@ -141,6 +173,33 @@ pub(super) fn curve(
     series
 }
 
+/// The area or pressure of all rows, if it is one.
+pub(super) fn only_place(rows: &[&FrictionRow]) -> Option<f64> {
+    let first = abscissa(rows.first()?);
+    rows.iter().all(|row| abscissa(row) == first).then_some(first)
+}
+
+/// Series number so and so of so many, moved sideways where all are at one place and would hide each other.
+pub(super) fn beside(
+    series: Vec<Series>,
+    (number, count): (usize, usize),
+    place: Option<f64>,
+) -> Vec<Series> {
+    let Some(place) = place else { return series };
+    let by = BESIDE * place * (number as f64 - 0.5 * (count as f64 - 1.0));
+    let points =
+        |points: Points| -> Points { points.into_iter().map(|(x, y)| (x + by, y)).collect() };
+    let moved = |mark: Mark| match mark {
+        Mark::FilledCircles(of) => Mark::FilledCircles(points(of)),
+        Mark::Dots(of) => Mark::Dots(points(of)),
+        Mark::ErrorBars(bars) => {
+            Mark::ErrorBars(bars.into_iter().map(|(x, low, high)| (x + by, low, high)).collect())
+        }
+        other => other,
+    };
+    series.into_iter().map(|series| Series { mark: moved(series.mark), ..series }).collect()
+}
+
 /// Colour of a model and whether its line is dashed, the same in all figures that compare models.
 fn look(model: Model) -> (Colour, bool) {
     let (number, dashed) = match model {
@@ -200,7 +259,7 @@ mod tests {
     use super::*;
 
     fn about() -> About {
-        About { rubber: "x".into(), temperature_c: None, tolerance: None }
+        About { rubber: "x".into(), temperature_c: None, tolerance: None, angle_deg: None }
     }
 
     fn row(model: Model, speed_mm_s: f64) -> FrictionRow {
@@ -246,5 +305,17 @@ mod tests {
             ]
         );
         assert!(titles(&[]).is_empty());
+        // Not more lines in a panel than colours.
+        let many: Vec<FrictionRow> = [8, 9, 10, 11]
+            .into_iter()
+            .flat_map(|waves| {
+                [10.0, 50.0].map(|speed| FrictionRow {
+                    kind: SurfaceKind::sines(waves),
+                    ..row(Model::Bem, speed)
+                })
+            })
+            .collect();
+        assert_eq!(titles(&many[..6]), ["Model bem, rubber x"]);
+        assert_eq!(titles(&many), ["Model bem, 10 mm/s, rubber x", "Model bem, 50 mm/s, rubber x"]);
     }
 }

@@ -6,9 +6,12 @@
 //! | `budget` | what the error of friction is made of |
 //! | `contact` | contact area over pressure |
 //! | `correction` | the correction of the half-space by the microscale |
+//! | `direction` | friction of areal surfaces over the direction of sliding |
 //! | `fields` | pressure and deformation along a surface |
 //! | `friction` | friction over contact area |
+//! | `maps` | contact pressure and contact patches of areal surfaces |
 //! | `methods` | friction of one road under the surfaces that stand for it |
+//! | `patches` | contact patches of a periodic map |
 //! | `roughness` | correlation and spectrum of the scans |
 //! | `rubber` | the master curve of the rubber of a run |
 //! | `rubber_fit` | measured and fitted moduli over frequency, and the shift factors |
@@ -21,9 +24,12 @@ mod accuracy;
 mod budget;
 mod contact;
 mod correction;
+mod direction;
 mod fields;
 mod friction;
+mod maps;
 mod methods;
+mod patches;
 mod roughness;
 mod rubber;
 mod rubber_fit;
@@ -33,14 +39,16 @@ mod study;
 mod waves;
 
 pub use friction::friction_figure;
+pub(super) use methods::reference;
 pub(super) use rubber::{Material, material};
 pub use rubber_fit::rubber_fit_figure;
 pub use speed::speed_figure;
 pub use study::study_figure;
 pub(super) use waves::microscale_slope;
 
+use super::About;
 use super::ReportError;
-use super::tables::{About, significant};
+use super::tables::significant;
 use crate::artifact::RunView;
 use crate::plot::Figure;
 use crate::stages;
@@ -63,7 +71,7 @@ pub struct Kind {
 }
 
 /// All kinds of figures, in the order of the data.
-pub static ALL: [Kind; 17] = [
+pub static ALL: [Kind; 19] = [
     Kind {
         name: "scans",
         shows: "heights of some windows over their length",
@@ -108,8 +116,8 @@ pub static ALL: [Kind; 17] = [
     },
     Kind {
         name: "methods",
-        shows: "friction of the same road under all surfaces that stand for it, with the ratio to the measured profiles",
-        requires: "measured profiles and other surfaces, key realise.methods",
+        shows: "friction of the same road under all surfaces that stand for it, with the ratio to the measured profiles or maps",
+        requires: "measured profiles or maps, and other surfaces, key realise.methods",
         stages: &[stages::tables::STAGE],
         make: methods::methods,
     },
@@ -138,7 +146,7 @@ pub static ALL: [Kind; 17] = [
         name: "area",
         shows: "contact area over pressure of every solved contact",
         requires: "the stage bem",
-        stages: &[stages::bem::STAGE],
+        stages: &[stages::bem::STAGE, stages::areal::STAGE],
         make: contact::area,
     },
     Kind {
@@ -163,6 +171,20 @@ pub static ALL: [Kind; 17] = [
         make: fields::deformation,
     },
     Kind {
+        name: "pressure-map",
+        shows: "contact pressure and contact patches of an areal surface, in colours",
+        requires: "fields of areal surfaces: height maps, section [ingest.maps], and key areal.field_area_fractions",
+        stages: &[stages::realise::STAGE, stages::areal::STAGE],
+        make: maps::pressure_map,
+    },
+    Kind {
+        name: "direction",
+        shows: "friction of areal surfaces over the direction of sliding",
+        requires: "areal surfaces and two or more directions, key areal.angles_deg",
+        stages: &[stages::areal::STAGE],
+        make: direction::direction,
+    },
+    Kind {
         name: "rubber",
         shows: "moduli and loss factor over frequency with the frequencies that the surface excites",
         requires: "the stage bem",
@@ -175,6 +197,7 @@ pub static ALL: [Kind; 17] = [
         requires: "the stage bem",
         stages: &[
             stages::bem::STAGE,
+            stages::areal::STAGE,
             stages::micro::STAGE,
             stages::fem::STAGE,
             stages::multilevel::STAGE,

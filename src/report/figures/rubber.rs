@@ -3,8 +3,10 @@
 use crate::artifact::RunView;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
+use crate::report::read::rows;
 use crate::rubber::{FrequencyRange, Rubber};
-use crate::stages::realise::{SURFACES, read_surfaces};
+use crate::stages::realise::{AREAL_SURFACES, SURFACES, read_surfaces};
+use crate::units::Units;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -39,9 +41,14 @@ pub(in crate::report) fn material(run: &RunView) -> Result<Option<Material>, Rep
     let ends = [measured["lowest_hz"].as_f64(), measured["highest_hz"].as_f64()];
     let surfaces = if run.has(SURFACES)? { read_surfaces(run)? } else { vec![] };
     let waves = || surfaces.iter().flat_map(|s| &s.profile).filter(|w| w.amplitude > 0.0);
+    let areal = rows(run, AREAL_SURFACES)?.unwrap_or_default();
+    let of_maps = areal.iter().flat_map(|row| {
+        [row.period_x_mm.max(row.period_y_mm), row.shortest_wavelength_mm].map(Units::mm_to_m)
+    });
+    let lengths: Vec<f64> = waves().map(|w| w.wavelength).chain(of_maps).collect();
     let speeds = parameters["speeds_mm_s"].as_array().into_iter().flatten();
     let excited = speeds.filter_map(Value::as_f64).filter_map(|speed| {
-        let range = FrequencyRange::excited(waves().map(|w| w.wavelength), [1e-3 * speed])?;
+        let range = FrequencyRange::excited(lengths.iter().copied(), [1e-3 * speed])?;
         Some((speed, range))
     });
     Ok(Some(Material {

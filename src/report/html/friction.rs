@@ -2,11 +2,14 @@
 
 use super::Report;
 use super::page::{absent, number, optional, percent, table};
+use crate::report::About;
 use crate::report::ReportError;
+use crate::report::figures::reference;
 use crate::report::read::rows;
-use crate::report::tables::{About, FrictionTable, friction_tables};
+use crate::report::tables::{FrictionTable, friction_tables};
 use crate::stages;
 use crate::stages::Stage;
+use crate::stages::areal::AREAL_SOLVES;
 use crate::stages::bem::{Given, REALISATIONS, RealisationsRow, SOLVES};
 use crate::stages::tables::{
     BUDGET, BudgetRow, COMPARISON, ComparisonRow, FRICTION, FrictionRow, METHODS, MODELS,
@@ -62,9 +65,10 @@ impl Report<'_> {
         let realisations = rows(self.run, REALISATIONS)?.unwrap_or_default();
         let friction = self.friction_rows()?;
         let budget = rows(self.run, BUDGET)?.unwrap_or_default();
+        let areal = rows(self.run, AREAL_SOLVES)?.unwrap_or_default();
         let tolerance = self.tolerance()?;
         Ok(html! {
-            (self.warnings(&[stages::bem::STAGE, stages::multilevel::STAGE])?)
+            (self.warnings(&[stages::bem::STAGE, stages::areal::STAGE, stages::multilevel::STAGE])?)
             p { @match tolerance {
                 Some(tolerance) => { "The recipe asks for a relative accuracy of the averages of " (percent(tolerance)) "." }
                 None => { "The recipe asks for no accuracy of the averages (key tolerance); the errors are estimated nevertheless." }
@@ -74,12 +78,8 @@ impl Report<'_> {
             @if !budget.is_empty() { (budget_table(&budget)) }
             (self.figure("accuracy")?)
             @if !friction.is_empty() { (error_table(&friction)) }
-            @if !solves.is_empty() {
-                p { (solves.len()) " contacts of the half-space took "
-                    (number(solves.iter().map(|row| row.seconds).sum(), 3))
-                    " s of all threads together; the largest residual is "
-                    (number(solves.iter().map(|row| row.residual).fold(0.0, f64::max), 2)) "." }
-            }
+            (effort("contacts of the half-space", solves.iter().map(|row| (row.seconds, row.residual))))
+            (effort("contacts of areal surfaces", areal.iter().map(|row| (row.seconds, row.residual))))
             @if !realisations.is_empty() { (realisation_table(&realisations)) }
         })
     }
@@ -105,6 +105,18 @@ impl Report<'_> {
         let caption = "Wall time of each stage, when it was last computed";
         Ok(table(caption, &["stage", "wall time / s"], 1, lines))
     }
+}
+
+/// Time and largest residual of solves, given as pairs of these.
+fn effort(what: &str, solves: impl Iterator<Item = (f64, f64)>) -> Markup {
+    let (mut count, mut seconds, mut largest) = (0, 0.0, 0.0_f64);
+    for (time, residual) in solves {
+        (count, seconds, largest) = (count + 1, seconds + time, largest.max(residual));
+    }
+    html! { @if count > 0 {
+        p { (count) " " (what) " took " (number(seconds, 3)) " s of all threads together; the largest residual is "
+            (number(largest, 2)) "." }
+    } }
 }
 
 fn models_in_words(rows: &[FrictionRow]) -> String {
@@ -207,7 +219,10 @@ fn model_table(models: &[ModelRow]) -> Markup {
 
 fn method_table(methods: &[MethodRow]) -> Markup {
     table(
-        "Friction of the same road under the surfaces that stand for it",
+        &format!(
+            "Friction of the same road under the surfaces that stand for it, and its ratio to that of the {}",
+            reference(methods)
+        ),
         &[
             "model",
             "surfaces",
@@ -216,7 +231,7 @@ fn method_table(methods: &[MethodRow]) -> Markup {
             "pressure / MPa",
             "realisations",
             "mean µ",
-            "over measured",
+            "ratio",
             "± 95 %",
         ],
         2,

@@ -2,6 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `areal` | surfaces that are rough in both directions: roughness, direction, contact patches |
 //! | `contact` | sections on the correction, the fields and the rubber |
 //! | `friction` | sections on friction, its tables and its error |
 //! | `page` | parts that all sections are made of |
@@ -10,6 +11,7 @@
 //! | `scans` | sections on the scans |
 //! | `study` | the study of one sine wave |
 
+mod areal;
 mod contact;
 mod friction;
 mod page;
@@ -126,7 +128,14 @@ impl Report<'_> {
             add("waves", "Waves, slopes and the model of each", self.waves()?);
             add("friction", "Friction over contact area", self.friction()?);
             add("correction", "Correction over pressure", self.correction()?);
-            add("fields", "Pressure and deformed profiles", self.fields()?);
+            add("fields", "Pressure along profiles and deformed profiles", self.fields()?);
+            if self.has_areal_surfaces()? {
+                add(
+                    "areal",
+                    "Areal surfaces: roughness, direction and contact patches",
+                    self.areal()?,
+                );
+            }
             add("rubber", "Rubber and the frequencies that the surface excites", self.rubber()?);
             add("tables", "Tables", self.tables()?);
             add("accuracy", "Speed against error", self.accuracy()?);

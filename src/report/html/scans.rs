@@ -5,9 +5,12 @@ use super::page::{absent, number, optional, percent, table};
 use crate::report::ReportError;
 use crate::report::read::rows;
 use crate::stages;
-use crate::stages::characterise::{AVERAGES, PARAMETERS, ParametersRow};
-use crate::stages::ingest::{FAULTS, FaultRow, REPORT, ScanReportRow, WINDOWS, WindowRow};
+use crate::stages::characterise::{AVERAGES, AverageRow, PARAMETERS, ParametersRow};
+use crate::stages::ingest::{
+    FAULTS, FaultRow, MAP_WINDOWS, MapRow, REPORT, ScanReportRow, WINDOWS, WindowRow,
+};
 use maud::{Markup, html};
+use std::collections::BTreeSet;
 
 const NO_SCANS: &str = "This run has no scans: its recipe states the waves itself.";
 
@@ -18,6 +21,7 @@ impl Report<'_> {
         };
         let faults = rows(self.run, FAULTS)?.unwrap_or_default();
         let windows = rows(self.run, WINDOWS)?.unwrap_or_default();
+        let maps = rows(self.run, MAP_WINDOWS)?.unwrap_or_default();
         let found: Vec<&FaultRow> = faults.iter().filter(|fault| fault.count > 0).collect();
         let rejected: Vec<&WindowRow> = windows.iter().filter(|w| w.rejected.is_some()).collect();
         let points: u64 = scans.iter().map(|scan| scan.points_read).sum();
@@ -25,6 +29,7 @@ impl Report<'_> {
             (self.warnings(&[stages::ingest::STAGE])?)
             p { (scans.len()) " scans with " (points) " points came in; " (windows.len() - rejected.len())
                 " of " (windows.len()) " windows were kept." }
+            @if !maps.is_empty() { p { (map_sentence(&maps)) } }
             (scan_table(&scans))
             @if found.is_empty() {
                 p { "No faults were found in the scans." }
@@ -36,6 +41,12 @@ impl Report<'_> {
                     rejected.iter().map(|w| vec![
                         w.window.clone(), percent(w.missing_share), w.rejected.clone().unwrap_or_default(),
                     ])))
+            }
+            @if maps.iter().any(|row| row.rejected.is_some()) {
+                (table("Windows of maps that were rejected", &["window", "missing", "why"], 3,
+                    maps.iter().filter_map(|row| {
+                        Some(vec![row.window.clone(), percent(row.missing_share), row.rejected.clone()?])
+                    })))
             }
         })
     }
@@ -51,16 +62,41 @@ impl Report<'_> {
             (self.figure("heights")?)
             (self.doubt(&[stages::characterise::STAGE]))
             @if !averages.is_empty() {
-                (table("Roughness parameters, averages over the windows",
-                    &["parameter", "mean", "± 95 %", "standard deviation", "windows"], 1,
-                    averages.iter().map(|row| vec![
-                        row.parameter.clone(), number(row.mean, 4), optional(row.confidence_95, 2),
-                        optional(row.standard_deviation, 2), row.windows.to_string(),
-                    ])))
+                (average_table("Roughness parameters, averages over the windows", &averages))
             }
             @if !parameters.is_empty() { (parameter_table(&parameters)) }
         })
     }
+}
+
+/// Parameters of roughness as means over windows.
+pub(super) fn average_table(caption: &str, rows: &[AverageRow]) -> Markup {
+    table(
+        caption,
+        &["parameter", "mean", "± 95 %", "standard deviation", "windows"],
+        1,
+        rows.iter().map(|row| {
+            vec![
+                row.parameter.clone(),
+                number(row.mean, 4),
+                optional(row.confidence_95, 2),
+                optional(row.standard_deviation, 2),
+                row.windows.to_string(),
+            ]
+        }),
+    )
+}
+
+/// What became of the maps: the lines of the same files are counted beside them.
+fn map_sentence(windows: &[MapRow]) -> String {
+    let maps: BTreeSet<&str> = windows.iter().map(|row| row.map.as_str()).collect();
+    let kept = windows.iter().filter(|row| row.rejected.is_none()).count();
+    let maps = if maps.len() == 1 {
+        "1 height map was".into()
+    } else {
+        format!("{} height maps were", maps.len())
+    };
+    format!("{maps} kept beside the lines, with {kept} of {} windows.", windows.len())
 }
 
 fn scan_table(scans: &[ScanReportRow]) -> Markup {
