@@ -49,7 +49,8 @@ fn captions_say_what_was_computed() {
         outcome(&campaign, "report out --to report.html --quiet").result();
         campaign.read("report.html")
     };
-    assert!(report.contains("over measured") && report.contains("what would reduce it"));
+    assert!(report.contains("its ratio to that of the measured profiles</caption>"));
+    assert!(report.contains("what would reduce it"));
 }
 
 #[test]
