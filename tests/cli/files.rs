@@ -203,7 +203,10 @@ fn clumsy_files_are_answered_clearly() {
     assert!(inspected(&path)["unread"].as_str().unwrap().contains("`1,234.5` separates thousands"));
     let row = "1 2 3 4 5 6 7 8 9 10 11 12 13\n";
     fs::write(&path, row.repeat(3)).unwrap();
-    assert!(inspected(&path)["unread"].as_str().unwrap().contains("height map"));
+    let rows = inspected(&path);
+    assert!(rows["unread"].as_str().unwrap().contains("does not state x_spacing_um"), "{rows}");
+    assert_eq!(rows["matrix"], true);
+    assert!(rows["recipe_section"].as_str().unwrap().contains("matrix = true"), "{rows}");
 }
 
 /// What describes a text is refused where it would be passed over.
