@@ -271,6 +271,7 @@ fn shortened(recipe: &Recipe) -> Recipe {
 fn areal(chain: &Chain, view: &RunView, threads: usize) -> Result<(f64, f64), ForecastError> {
     let sweep = areal::Sweep { areal: chain.areal.clone(), wanted: chain.bem.wanted() };
     let surfaces = read_areal_surfaces(view)?;
+    areal::require_memory(chain.areal, &surfaces)?;
     let maps = if chain.has_maps() { read_maps(view)?.len().min(most_windows(chain)) } else { 0 };
     let curves = (chain.bem.speeds_mm_s.len() * chain.areal.angles_deg.len()) as f64;
     let (mut seconds, mut megabytes) = (0.0, 0.0_f64);

@@ -7,7 +7,7 @@ use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::stages::bem::Given;
-use crate::stages::realise::{SURFACES, SurfaceKind};
+use crate::stages::realise::{AREAL, SURFACES, SurfaceKind};
 use crate::stages::tables::{FRICTION, FrictionRow, Model};
 use serde::Serialize;
 use serde_json::Value;
@@ -97,15 +97,36 @@ pub fn compare(first: &RunView, second: &RunView) -> Result<Compared, ReportErro
             significant(short_b)
         ));
     }
-    let material = |run: &RunView| About::of(run).map(|about| about.material());
-    Ok(Compared { rows, materials: [material(first)?, material(second)?], warnings })
+    let (about_a, about_b) = (About::of(first)?, About::of(second)?);
+    if rows.iter().any(|row| row.kind.method.is_areal()) {
+        if about_a.angle_deg != about_b.angle_deg {
+            warnings.push(format!(
+                "areal surfaces: the rubber slides at {} degrees in the first run and at {} in the second",
+                about_a.angle_deg.unwrap_or_default(),
+                about_b.angle_deg.unwrap_or_default()
+            ));
+        }
+        if about_a.thickness_mm != about_b.thickness_mm {
+            let body = |about: &About| {
+                about.thickness_mm.map_or("a half-space".into(), |mm| format!("a layer of {mm} mm"))
+            };
+            warnings.push(format!(
+                "areal surfaces: the rubber is {} in the first run and {} in the second",
+                body(&about_a),
+                body(&about_b)
+            ));
+        }
+    }
+    Ok(Compared { rows, materials: [about_a.material(), about_b.material()], warnings })
 }
 
 /// What two runs share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shared {
-    /// All surfaces.
+    /// All profiles.
     surfaces: bool,
+    /// All areal surfaces.
+    areal: bool,
     /// The seed of the phases.
     seed: bool,
 }
@@ -113,21 +134,27 @@ struct Shared {
 impl Shared {
     fn of(first: &RunView, second: &RunView) -> Result<Self, ReportError> {
         let (a, b) = (first.stage_manifest("realise")?, second.stage_manifest("realise")?);
-        let (Some(a), Some(b)) = (a, b) else { return Ok(Self { surfaces: false, seed: false }) };
-        let file = SURFACES.file().name;
-        let content = |manifest: &crate::artifact::Manifest| {
-            manifest.output(file).map(|output| output.content_digest)
+        let (Some(a), Some(b)) = (a, b) else {
+            return Ok(Self { surfaces: false, areal: false, seed: false });
+        };
+        let same = |file: &str| {
+            let content = |manifest: &crate::artifact::Manifest| {
+                manifest.output(file).map(|output| output.content_digest)
+            };
+            content(&a).is_some() && content(&a) == content(&b)
         };
         let seed = |parameters: &Value| parameters.get("seed").cloned();
         Ok(Self {
-            surfaces: content(&a).is_some() && content(&a) == content(&b),
+            surfaces: same(SURFACES.file().name),
+            areal: same(AREAL.file.name),
             seed: seed(&a.parameters) == seed(&b.parameters),
         })
     }
 
     /// Whether realisations of that kind are the same in both runs, or have the same phases.
     fn pairs(self, kind: SurfaceKind) -> bool {
-        self.surfaces || self.seed && !kind.method.of_a_window()
+        let same = if kind.method.is_areal() { self.areal } else { self.surfaces };
+        same || self.seed && !kind.method.of_a_window()
     }
 }
 
@@ -266,18 +293,19 @@ mod tests {
     fn the_same_surfaces_are_compared_one_by_one() {
         use crate::stages::realise::Method::Measured;
         let (a, b) = (row(Measured, &[0.1, 0.5, 0.9]), row(Measured, &[0.2, 0.61, 0.99]));
-        let same = Shared { surfaces: true, seed: true };
+        let same = Shared { surfaces: true, areal: true, seed: true };
         let paired = difference(&a, &b, same);
         assert!(paired.is_told() && paired.pairing == Pairing::Paired, "{paired:?}");
         // t(2) 0.01 / sqrt 3.
         approx::assert_relative_eq!(paired.confidence_95.unwrap(), 0.02484, max_relative = 1e-3);
-        let other = difference(&a, &b, Shared { surfaces: false, seed: true });
+        let other = difference(&a, &b, Shared { surfaces: false, areal: false, seed: true });
         assert!(!other.is_told() && other.pairing == Pairing::Independent);
         let sines = crate::stages::realise::Method::Sines;
         let mut a = row(sines, &[0.1, 0.5, 0.9]);
         let mut b = row(sines, &[0.2, 0.61, 0.99]);
         (a.scan_error, b.scan_error) = (Some(0.3), Some(0.4));
-        let shared_phases = difference(&a, &b, Shared { surfaces: false, seed: true });
+        let shared_phases =
+            difference(&a, &b, Shared { surfaces: false, areal: false, seed: true });
         assert_eq!(shared_phases.pairing, Pairing::Paired);
         // Two roads: the errors of both scans count.
         assert!(shared_phases.confidence_95.unwrap() > 0.5);

@@ -310,7 +310,13 @@ mod tests {
     use serde_json::json;
 
     fn about(rubber: &str) -> About {
-        About { rubber: rubber.into(), temperature_c: None, tolerance: None, angle_deg: None }
+        About {
+            rubber: rubber.into(),
+            temperature_c: None,
+            tolerance: None,
+            angle_deg: None,
+            thickness_mm: None,
+        }
     }
 
     fn row(waves: u32, area: f64, realisations: &[f64]) -> FrictionRow {
@@ -367,6 +373,7 @@ mod tests {
             temperature_c: Some(-10.0),
             tolerance: Some(0.01),
             angle_deg: None,
+            thickness_mm: None,
         };
         assert_eq!(
             tables[0].caption(&all),

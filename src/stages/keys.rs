@@ -29,6 +29,16 @@ pub(super) fn of_curve<E>(error: &CurveError<E>) -> &'static str {
     }
 }
 
+/// The same for a curve of an areal surface.
+pub(super) fn of_areal_curve<E>(error: &CurveError<E>) -> &'static str {
+    match error {
+        CurveError::NotSmooth { .. } => {
+            "; raise areal.tolerance or areal.points_per_shortest_wavelength, or leave small areas out of bem.area_fractions"
+        }
+        _ => "",
+    }
+}
+
 /// After an error of [`crate::surface::self_affine::fit_self_affine`].
 pub(super) fn of_self_affine(error: &SelfAffineError) -> &'static str {
     match error {

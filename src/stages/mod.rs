@@ -229,6 +229,45 @@ pub enum StageError {
         "none of the scans is a height map, and [ingest.maps] keeps maps: leave the section out, or give maps"
     )]
     NoMaps,
+    /// Windows of lines or maps without a wave.
+    #[error(
+        "{window} is flat down to realise.shortest_wavelength_mm, and no other window is left: it has no roughness to slide \
+         over; check the units of the heights"
+    )]
+    FlatWindow {
+        /// The first of them.
+        window: String,
+    },
+    /// An isotropic surface of too few or too many waves.
+    #[error(
+        "isotropic surfaces of {period_mm} mm hold {:.1} shortest waves of {shortest_mm} mm along a side, and between {fewest} and {most} \
+         can be made: change realise.isotropic_period_mm or realise.shortest_wavelength_mm",
+        period_mm / shortest_mm
+    )]
+    IsotropicPeriod {
+        /// Period in mm.
+        period_mm: f64,
+        /// Shortest wavelength in mm.
+        shortest_mm: f64,
+        /// Fewest shortest waves in a period.
+        fewest: f64,
+        /// Most of them.
+        most: f64,
+    },
+    /// A contact of an areal surface.
+    #[error("{kind}, realisation {realisation}, {speed_mm_s} mm/s at {angle_deg} degrees: {source}{}", keys::of_areal_curve(.source))]
+    ArealContact {
+        /// Which surfaces.
+        kind: realise::SurfaceKind,
+        /// Realisation.
+        realisation: u32,
+        /// Speed in mm/s.
+        speed_mm_s: f64,
+        /// Direction of sliding in degrees from x.
+        angle_deg: f64,
+        /// Why.
+        source: Box<crate::contact::curve::CurveError<SolveError>>,
+    },
     /// A dataset of areal surfaces that is not as it was written.
     #[error("{name} in areal.h5 of realise is not an areal surface: run with --force realise")]
     ArealSurface {
@@ -393,7 +432,7 @@ impl HasKind for StageError {
             Self::Gap(source) => source.kind(),
             Self::PeriodicMap(source) => source.kind(),
             Self::Rubber(source) => source.kind(),
-            Self::Contact { source, .. } => source.kind(),
+            Self::Contact { source, .. } | Self::ArealContact { source, .. } => source.kind(),
             Self::Microscale { source, .. }
             | Self::FiniteDeformation { source, .. }
             | Self::Solve { source, .. } => source.kind(),
@@ -401,6 +440,8 @@ impl HasKind for StageError {
             | Self::NoTextFormat { .. }
             | Self::NoMaps
             | Self::ArealSurface { .. }
+            | Self::FlatWindow { .. }
+            | Self::IsotropicPeriod { .. }
             | Self::NoIsotropicSpectrum
             | Self::ArealMemory { .. }
             | Self::NoScans { .. }
@@ -446,7 +487,8 @@ pub enum SolveError {
     /// A contact so small that its friction is the slope of the profile at one point.
     #[error(
         "a contact area fraction of {area:e} is less than two of {points} grid points: leave it out of \
-         bem.area_fractions, or raise bem.points_per_shortest_wavelength"
+         bem.area_fractions, or raise bem.points_per_shortest_wavelength (of areal surfaces \
+         areal.points_per_shortest_wavelength)"
     )]
     Unresolved {
         /// The contact area fraction.

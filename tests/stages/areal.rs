@@ -271,8 +271,24 @@ fn what_does_not_go_together_is_told() {
         message.contains("128 by 128 points") && message.contains("areal.memory_gb"),
         "{message}"
     );
-    let message = error("[bem]", "[areal]\nangles_deg = [0.0, 0.0]\n\n[bem]");
-    assert!(message.contains("areal.angles_deg = [0.0, 0.0]"), "{message}");
+    let message = error("[bem]", "[areal]\nangles_deg = [0.0, 360.0]\n\n[bem]");
+    assert!(message.contains("areal.angles_deg = [0.0, 360.0]"), "{message}");
+    let isotropic = |mm: f64| {
+        format!(
+            "methods = [\"isotropic\"]\nareal_realisations = 1\nseed = 1\nisotropic_period_mm = {mm:?}"
+        )
+    };
+    for mm in [0.4, 1e6] {
+        let message = error("methods = [\"measured\"]", &isotropic(mm));
+        assert!(message.contains("realise.isotropic_period_mm"), "{message}");
+    }
+    let small = "periodic = \"blend\"\nprofiles = false\n\n[bem]\narea_fractions = [1e-6]";
+    let campaign = road();
+    campaign.edit("recipe.toml", "area_fractions = [0.05]\n", "");
+    campaign.edit("recipe.toml", "periodic = \"blend\"\n\n[bem]", small);
+    let stop = try_run(&recipe(&campaign), &campaign.path("out"), Selection::default());
+    let message = stop.unwrap_err().to_string();
+    assert!(message.contains("at 0 degrees") && message.contains("areal.points_per"), "{message}");
     let message = error("periodic = \"blend\"", "profiles = false\nareal_realisations = 0");
     assert!(message.contains("areal_realisations"), "{message}");
     let message = error(
@@ -286,6 +302,37 @@ fn what_does_not_go_together_is_told() {
     let stop = try_run(&recipe(&campaign), &campaign.path("out"), Selection::default());
     let message = stop.unwrap_err().to_string();
     assert!(message.contains("none of the scans is a height map"), "{message}");
+}
+
+#[test]
+fn doubtful_maps_are_told_of() {
+    let map = SyntheticMap { length: 6.4e-3, rms_height: 5e-5, ..SyntheticMap::bundled() };
+    let mut heights = map.generate("map").unwrap().heights;
+    // A row that jumped, and a window that is flat.
+    heights[100 * 128..101 * 128].iter_mut().for_each(|z| *z += 1e-3);
+    for row in heights.chunks_exact_mut(128).take(64) {
+        row[..64].fill(0.0);
+    }
+    let campaign = campaign(128, heights);
+    campaign.edit(
+        "recipe.toml",
+        "window_length_mm = [3.2, 3.2]",
+        "window_length_mm = [3.2, 3.2]\nform = \"mean\"",
+    );
+    campaign.edit(
+        "recipe.toml",
+        "[ingest.conditioning]\n",
+        "[ingest.conditioning]\nmax_missing = 0.5\n",
+    );
+    campaign.edit("recipe.toml", "map_line_step = 8", "map_line_step = 60");
+    run(&recipe(&campaign), &campaign.path("out"));
+    let told = warnings(&campaign, "ingest").join("\n");
+    assert!(told.contains("1 rows and") && told.contains("is tilted by"), "{told}");
+    let told = warnings(&campaign, "realise").join("\n");
+    assert!(told.contains("1 of 4 maps are flat") && told.contains("map/000"), "{told}");
+    assert!(told.contains("less than 4 shortest waves of 0.40 mm"), "{told}");
+    let surfaces = RunView::of(campaign.path("out")).rows(AREAL_SURFACES).unwrap();
+    assert_eq!(surfaces.len(), 3);
 }
 
 #[test]

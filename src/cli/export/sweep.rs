@@ -70,6 +70,7 @@ impl Export {
                 temperature_c: *temperature_c,
                 tolerance,
                 angle_deg: None,
+                thickness_mm: None,
             };
             // Writing to a string cannot fail.
             let _ = write!(text, "{}", one(&title(&rows[0]), &friction_tables(&friction), &about));

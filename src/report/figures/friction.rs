@@ -259,7 +259,13 @@ mod tests {
     use super::*;
 
     fn about() -> About {
-        About { rubber: "x".into(), temperature_c: None, tolerance: None, angle_deg: None }
+        About {
+            rubber: "x".into(),
+            temperature_c: None,
+            tolerance: None,
+            angle_deg: None,
+            thickness_mm: None,
+        }
     }
 
     fn row(model: Model, speed_mm_s: f64) -> FrictionRow {

@@ -253,6 +253,7 @@ mod tests {
             temperature_c: Some(20.0),
             tolerance: None,
             angle_deg: Some(0.0),
+            thickness_mm: None,
         };
         let [pressure, patches] = one.panels(&about, Some(0.4));
         assert_eq!(pressure.title, "Pressure, measured maps, realisation 1, 10 mm/s");

@@ -5,7 +5,7 @@ use super::{Areal, ArealCurveRow, ArealSolveRow};
 use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore};
 use crate::contact::areal::{ArealContact, ArealSetup, ArealSurface, Sliding};
 use crate::contact::curve::{CurveError, friction_curve};
-use crate::contact::refine::{AREAL, OnGrid, on_grid};
+use crate::contact::refine::{AREAL, LEAST_CONTACT_POINTS, OnGrid, on_grid};
 use crate::contact::{CurvePoint, CurveValue};
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
@@ -95,6 +95,11 @@ impl<'a> Curve<'a> {
         let mut values = Vec::new();
         let mut fields = Vec::new();
         if let Some(&smallest) = wanted.area_fractions.first() {
+            let points = self.grids.points[0] * self.grids.points[1];
+            if smallest * (points as f64) < LEAST_CONTACT_POINTS {
+                let unresolved = SolveError::Unresolved { area: smallest, points };
+                return Err(CurveError::Solve(unresolved));
+            }
             let guess = self.first_guess(smallest);
             let curve = |targets: &[f64], this: &mut Self| {
                 friction_curve(targets, areal.tolerance, guess, |pressure| this.point(pressure))

@@ -112,7 +112,9 @@ impl Default for Areal {
 impl Areal {
     pub(crate) fn check(&self, bem: &Bem) -> Result<(), InvalidRecipe> {
         let angles = &self.angles_deg;
-        let once = angles.iter().enumerate().all(|(i, a)| !angles[..i].contains(a));
+        let turned = |a: f64| a.rem_euclid(360.0);
+        let same = |a: f64| move |b: &f64| turned(a) == turned(*b);
+        let once = angles.iter().enumerate().all(|(i, a)| !angles[..i].iter().any(same(*a)));
         let inside = angles.iter().all(|a| (-360.0..=360.0).contains(a));
         let wanted = "one angle or more from -360 to 360, without repeats";
         require(!angles.is_empty() && once && inside, "areal.angles_deg", angles, wanted)?;
@@ -143,7 +145,7 @@ impl Areal {
 /// Solves the contacts that are not in the store and writes the results; returns warnings.
 ///
 /// # Errors
-/// [`StageError::ArealMemory`] for grids that do not fit into the memory that may be taken; [`StageError::Contact`] for a
+/// [`StageError::ArealMemory`] for grids that do not fit into the memory that may be taken; [`StageError::ArealContact`] for a
 /// curve that cannot be had; [`StageError::Interrupted`]. Solves that are done are kept in the store.
 pub fn run(
     parameters: &Areal,
@@ -200,7 +202,10 @@ pub fn missing(
 }
 
 /// Refuses grids that do not fit into the memory that may be taken by as many contacts as there are threads.
-fn require_memory(parameters: &Areal, surfaces: &[ArealSurface]) -> Result<(), StageError> {
+pub(crate) fn require_memory(
+    parameters: &Areal,
+    surfaces: &[ArealSurface],
+) -> Result<(), StageError> {
     const BYTES_PER_GB: f64 = 1e9;
     for surface in surfaces {
         let points = parameters.grid(surface);

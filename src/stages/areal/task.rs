@@ -67,7 +67,7 @@ impl SolveTask for Task {
     }
 
     fn name(&self) -> String {
-        self.surface.name_at("areal", self.speed_mm_s)
+        format!("{} at {} degrees", self.surface.name_at("areal", self.speed_mm_s), self.angle_deg)
     }
 
     fn solve(
@@ -100,8 +100,9 @@ impl SolveTask for Task {
 impl Task {
     fn failed(&self, source: CurveError<SolveError>) -> StageError {
         let (kind, realisation) = (self.surface.kind, self.surface.realisation);
-        let speed_mm_s = self.speed_mm_s;
-        let contact = |source| StageError::Contact { kind, realisation, speed_mm_s, source };
+        let (speed_mm_s, angle_deg) = (self.speed_mm_s, self.angle_deg);
+        let contact =
+            |source| StageError::ArealContact { kind, realisation, speed_mm_s, angle_deg, source };
         match source {
             CurveError::Solve(error) => {
                 error.in_stage(|error| contact(Box::new(CurveError::Solve(*error))))

@@ -232,6 +232,9 @@ pub fn run(
     let document = cleaning_markdown(&scans, &faults, &windows, &map_windows, &pictures);
     pending.write_document(CLEANING_FILE, &document)?;
     warnings.extend(warnings::of_scans(&reports));
+    if let Some(conditioning) = &ingest.maps {
+        warnings.extend(warnings::of_maps(&map_windows, conditioning.form));
+    }
     Ok(warnings)
 }
 

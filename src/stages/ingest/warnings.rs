@@ -1,9 +1,10 @@
 //! What a user is told of the scans.
 
-use super::{Conditioned, Ingest, ReadFile, ScanFile};
+use super::{Conditioned, Ingest, MapRow, ReadFile, ScanFile};
 use crate::scans::TextFormat;
 use crate::scans::description::LengthUnit;
 use crate::scans::text_shape::{repeated_inside, unit_name};
+use crate::surface::map::form::FormOfMap;
 use crate::surface::{ConditioningReport, RawScan};
 use crate::units::Units;
 
@@ -210,6 +211,56 @@ fn repeated_heights(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Optio
 pub(super) fn of_scans(reports: &[&ConditioningReport]) -> Vec<String> {
     [rejected(reports), jumps(reports), far(reports)].into_iter().flatten().collect()
 }
+
+/// What the maps give reason for.
+pub(super) fn of_maps(windows: &[MapRow], form: FormOfMap) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let maps: Vec<&MapRow> = windows.chunk_by(|a, b| a.map == b.map).map(|own| &own[0]).collect();
+    let rejected: Vec<&MapRow> = windows.iter().filter(|row| row.rejected.is_some()).collect();
+    if let Some(first) = rejected.first() {
+        warnings.push(format!(
+            "{} of {} windows of maps were rejected, the first, {}, because {}",
+            rejected.len(),
+            windows.len(),
+            first.window,
+            first.rejected.as_deref().unwrap_or_default()
+        ));
+    }
+    let jumped: Vec<&&MapRow> =
+        maps.iter().filter(|row| row.jumped_rows + row.jumped_columns > 0).collect();
+    if let Some(first) = jumped.first() {
+        warnings.push(format!(
+            "{} of {} maps have rows or columns that jumped as a whole, the first, {}, {} rows and {} columns: a contact rests on \
+             such steps; look at ingest/cleaning.md, set ingest.maps.level_jumps = \"missing\" to leave them out",
+            jumped.len(),
+            maps.len(),
+            first.map,
+            first.jumped_rows,
+            first.jumped_columns
+        ));
+    }
+    let tilted = |row: &&&MapRow| {
+        let rise = |slope: Option<f64>, points: u64, um: f64| {
+            slope.unwrap_or(0.0).abs() * points as f64 * um
+        };
+        let rise_um = rise(row.tilt_x, row.points_x, row.spacing_x_um)
+            + rise(row.tilt_y, row.points_y, row.spacing_y_um);
+        rise_um > MUCH_TILT_UM
+    };
+    if let (FormOfMap::Mean, Some(first)) = (form, maps.iter().find(tilted)) {
+        warnings.push(format!(
+            "map {} is tilted by {:.4} along x and {:.4} along y, and ingest.maps.form = \"mean\" leaves that: it is the rise of \
+             every period of the surface; take \"plane\"",
+            first.map,
+            first.tilt_x.unwrap_or_default(),
+            first.tilt_y.unwrap_or_default()
+        ));
+    }
+    warnings
+}
+
+/// Rise in µm of a map over its sides that is told of.
+const MUCH_TILT_UM: f64 = 10.0;
 
 fn rejected(reports: &[&ConditioningReport]) -> Option<String> {
     let windows = reports.iter().flat_map(|report| &report.windows);

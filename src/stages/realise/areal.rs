@@ -9,6 +9,7 @@ use crate::artifact::{
 use crate::stages::StageError;
 use crate::stages::characterise::IsotropicRow;
 use crate::surface::map::gaps::{GapError, fill_gaps};
+use crate::surface::map::periodic::blended_length;
 use crate::surface::map::phases::{isotropic_map, matched_map, random_phase_map};
 use crate::surface::{Closure, HeightMap, LineScan, PeriodicMap};
 use crate::units::Units;
@@ -128,33 +129,30 @@ struct Window {
 /// The areal surfaces of all methods of windows. Maps with a gap that is not filled are left out.
 ///
 /// # Errors
-/// [`StageError::Gap`] where no map is left; [`StageError::PeriodicMap`].
+/// [`StageError::Gap`] or [`StageError::FlatWindow`] where no map is left; [`StageError::PeriodicMap`].
 pub(super) fn of_maps(
     parameters: &Realise,
     maps: Vec<HeightMap>,
     shortest: f64,
 ) -> Result<ArealSurfaces, StageError> {
     let longest_gap = parameters.longest_gap_mm.map_or(LONGEST_GAP * shortest, Units::mm_to_m);
-    // To mirror a map is four times the points without one more height.
-    let closure = parameters.periodic.unwrap_or(Closure::Blend);
+    let closure = parameters.periodic.unwrap_or_default();
     let most = parameters.most_windows.map_or(usize::MAX, |most| most as usize);
-    let (mut windows, mut gaps) = (Vec::new(), Vec::new());
+    let (mut windows, mut left_out) = (Vec::new(), LeftOut::default());
     for map in maps {
         if windows.len() == most {
             break;
         }
         match window(map, closure, shortest, longest_gap) {
+            Ok(window) if window.map.is_flat() => left_out.flat.push(window.name),
             Ok(window) => windows.push(window),
-            Err(StageError::Gap(gap)) => gaps.push(gap),
+            Err(StageError::Gap(gap)) => left_out.gaps.push(gap),
             Err(error) => return Err(error),
         }
     }
-    let warnings = told(&windows, &gaps);
+    let warnings = told(&windows, &left_out, closure, shortest);
     if windows.is_empty() {
-        return Err(gaps
-            .into_iter()
-            .next()
-            .map_or(StageError::NoScans { paths: Vec::new() }, StageError::Gap));
+        return Err(left_out.into_error());
     }
     let draws = parameters.areal_drawn() as usize;
     let methods = parameters.methods.iter().filter_map(|method| method.areal());
@@ -180,8 +178,59 @@ pub(super) fn of_maps(
     Ok((surfaces, rows, warnings))
 }
 
-fn told(windows: &[Window], gaps: &[GapError]) -> Vec<String> {
+/// Windows that are no surfaces.
+#[derive(Default)]
+struct LeftOut {
+    gaps: Vec<GapError>,
+    /// Names of those without a wave.
+    flat: Vec<String>,
+}
+
+impl LeftOut {
+    /// Why no window is left.
+    fn into_error(self) -> StageError {
+        match (self.gaps.into_iter().next(), self.flat.into_iter().next()) {
+            (Some(gap), _) => StageError::Gap(gap),
+            (None, Some(window)) => StageError::FlatWindow { window },
+            (None, None) => StageError::NoMaps,
+        }
+    }
+}
+
+/// Share of filled points that is told of.
+const MUCH_FILLED: f64 = 0.1;
+/// Shortest waves over which the ends of a window pass into each other, at least: the seam is a steep ridge otherwise.
+const WAVES_IN_SEAM: f64 = 4.0;
+
+fn told(windows: &[Window], left_out: &LeftOut, closure: Closure, shortest: f64) -> Vec<String> {
+    let LeftOut { gaps, flat } = left_out;
     let mut warnings = Vec::new();
+    let seam = windows.iter().flat_map(|window| window.map.periods).map(blended_length);
+    let narrowest = seam.fold(f64::INFINITY, f64::min);
+    if closure == Closure::Blend && narrowest < WAVES_IN_SEAM * shortest {
+        warnings.push(format!(
+            "realise.periodic = \"blend\": the ends of the maps pass into each other over {:.2} mm, less than {WAVES_IN_SEAM} \
+             shortest waves of {:.2} mm; the seam is steeper than the road and raises friction (by 17 % on the bundled map); \
+             take larger windows, or \"mirror\"",
+            narrowest.m_to_mm(),
+            shortest.m_to_mm()
+        ));
+    }
+    let filled = windows.iter().map(|window| window.filled).fold(0.0, f64::max);
+    if filled > MUCH_FILLED {
+        warnings.push(format!(
+            "up to {:.0} % of the points of a map had no height and were filled with the smoothest surface, which has no \
+             roughness (filled in realise/areal.arrow); lower ingest.maps.max_missing, or scan again",
+            100.0 * filled
+        ));
+    }
+    if let Some(first) = flat.first() {
+        warnings.push(format!(
+            "{} of {} maps are flat, and no surfaces: the first is {first}",
+            flat.len(),
+            flat.len() + windows.len() + gaps.len()
+        ));
+    }
     if let Some(first) = gaps.first() {
         warnings.push(format!(
             "{} of {} maps are no surfaces, because of missing heights: {first} (realise.longest_gap_mm)",
@@ -226,10 +275,14 @@ fn drawn(
     }
 }
 
+/// Shortest waves in the period of an isotropic surface: as many as a map must have, and 16384 points along a side.
+const FEWEST_WAVES: f64 = 4.0;
+const MOST_WAVES: f64 = 8192.0;
+
 /// Isotropic surfaces of random phases whose lines have the averaged spectrum of the line scans.
 ///
 /// # Errors
-/// [`StageError::NoIsotropicSpectrum`] where the line scans have none.
+/// [`StageError::NoIsotropicSpectrum`] where the line scans have none; [`StageError::IsotropicPeriod`].
 pub(super) fn isotropic(
     parameters: &Realise,
     windows: &[LineScan],
@@ -238,6 +291,15 @@ pub(super) fn isotropic(
 ) -> Result<ArealSurfaces, StageError> {
     let length = windows.first().map_or(0.0, LineScan::length);
     let period = parameters.isotropic_period_mm.map_or(length, Units::mm_to_m);
+    let waves = period / shortest;
+    if !(FEWEST_WAVES..=MOST_WAVES).contains(&waves) {
+        return Err(StageError::IsotropicPeriod {
+            period_mm: period.m_to_mm(),
+            shortest_mm: shortest.m_to_mm(),
+            fewest: FEWEST_WAVES,
+            most: MOST_WAVES,
+        });
+    }
     let density = Density::new(spectrum)?;
     let seed = parameters.seed.unwrap_or_default();
     let made: Vec<(ArealSurface, ArealRow)> = (1..=parameters.areal_drawn())

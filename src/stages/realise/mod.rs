@@ -83,8 +83,7 @@ pub struct Realise {
     /// Directions in which the rubber slides over `measured` windows: a road is not the same in both.
     #[serde(default = "forward_alone", skip_serializing_if = "is_forward_alone")]
     pub directions: Vec<Direction>,
-    /// How a window is made periodic; `mirror` if not set, which makes both directions the same; of maps `blend`, because
-    /// mirrored ones have four times the points.
+    /// How a window is made periodic; `mirror` if not set, which makes both directions the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periodic: Option<Closure>,
     /// Shortest wavelength in mm of the surfaces of windows; that of the fitted sines if not set.
@@ -123,7 +122,14 @@ impl Realise {
         for (key, count) in keys.into_iter().filter_map(|(key, count)| Some((key, count?))) {
             require((1..=100_000).contains(&count), key, count, "1 to 100000")?;
         }
-        if self.draws() && self.drawn() == 0 {
+        let (lines, maps) = (self.drawn() > 0, self.areal_drawn() > 0);
+        let is_drawn = |method: &Method| match method {
+            Method::Measured => true,
+            Method::Sines => lines,
+            Method::Isotropic => maps,
+            _ => lines || maps && !self.profiles,
+        };
+        if !self.methods.iter().all(is_drawn) {
             let advice = "give a number of surfaces, or a `tolerance` that it follows from";
             return Err(InvalidRecipe::Missing { key: "realise.realisations", advice });
         }

@@ -83,22 +83,22 @@ pub(super) fn of_windows(
     let most = parameters.most_windows.map_or(usize::MAX, |most| most as usize);
     let longest_gap = parameters.longest_gap_mm.map_or(LONGEST_GAP * shortest, Units::mm_to_m);
     let periodic = parameters.periodic.unwrap_or_default();
-    let (mut profiles, mut gaps) = (Vec::new(), Vec::new());
+    let (mut profiles, mut gaps, mut flat) = (Vec::new(), Vec::new(), Vec::new());
     for window in windows {
         if profiles.len() == most {
             break;
         }
         match PeriodicProfile::new(window, periodic, shortest, longest_gap) {
+            Ok(profile) if is_flat(&profile) => flat.push(window.name.as_str()),
             Ok(profile) => profiles.push((window.name.as_str(), window.heights.len(), profile)),
             Err(gap @ PeriodicError::Gap { .. }) => gaps.push(gap),
             Err(error) => return Err(error.into()),
         }
     }
     if profiles.is_empty() {
-        return Err(gaps
-            .into_iter()
-            .next()
-            .map_or(StageError::NoScans { paths: Vec::new() }, StageError::Periodic));
+        let gap = gaps.into_iter().next().map(StageError::Periodic);
+        let flat = flat.first().map(|window| StageError::FlatWindow { window: (*window).into() });
+        return Err(gap.or(flat).unwrap_or(StageError::NoScans { paths: Vec::new() }));
     }
     let mut warnings = Vec::new();
     if let Some(first) = gaps.first() {
@@ -107,6 +107,13 @@ pub(super) fn of_windows(
              (realise.longest_gap_mm)",
             gaps.len(),
             gaps.len() + profiles.len()
+        ));
+    }
+    if let Some(first) = flat.first() {
+        warnings.push(format!(
+            "{} of {} windows are flat, and no surfaces: the first is {first}",
+            flat.len(),
+            flat.len() + profiles.len() + gaps.len()
         ));
     }
     if profiles.len() == 1 {
@@ -136,6 +143,11 @@ pub(super) fn of_windows(
     }
     let (surfaces, rows) = made.into_iter().unzip();
     Ok((surfaces, rows, warnings))
+}
+
+/// Whether a profile has no wave.
+fn is_flat(profile: &PeriodicProfile) -> bool {
+    profile.waves.iter().all(|wave| wave.amplitude == 0.0)
 }
 
 /// Every surface by its method and its number from 0: one of each window and direction, or as many as are drawn.

@@ -40,6 +40,7 @@ use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
+use crate::scans::file::MapLines;
 use crate::stages::realise::SurfaceKind;
 use accuracy::missed;
 use basis::Basis;
@@ -87,6 +88,11 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         multilevel: chain.multilevel.is_some(),
         scans: chain.ingest.is_some(),
         angle_deg: chain.areal.angles_deg.first().copied().filter(|_| chain.has_areal_surfaces()),
+        layer_mm: chain.areal.thickness_mm,
+        lines_deg: match chain.ingest.and_then(|ingest| ingest.map_lines) {
+            Some(MapLines::Columns) => 90.0,
+            _ => 0.0,
+        },
     };
     let mut parameters = json!(tables);
     // Where the published tables are is no parameter: their names and digests are inputs.
@@ -164,9 +170,29 @@ pub struct Models {
     pub scans: bool,
     /// The first direction of sliding over areal surfaces, if there are any.
     pub angle_deg: Option<f64>,
+    /// Thickness in mm of the layer that slides over them; a half-space if there is none.
+    pub layer_mm: Option<f64>,
+    /// Direction of the lines that are taken from maps.
+    pub lines_deg: f64,
 }
 
 impl Models {
+    /// A warning where maps and profiles that stand beside each other do not slide alike.
+    fn unlike_lines(self, compared: &[MethodRow]) -> Option<String> {
+        let angle = self.angle_deg?;
+        let has = |areal| compared.iter().any(|row| row.kind.method.is_areal() == areal);
+        let turned = (angle - self.lines_deg).rem_euclid(180.0) != 0.0;
+        if !(has(true) && has(false)) || !turned && self.layer_mm.is_none() {
+            return None;
+        }
+        let layer = self.layer_mm.map_or_else(String::new, |mm| format!(" as a layer of {mm} mm"));
+        Some(format!(
+            "the rubber slides over areal surfaces at {angle} degrees{layer}, and over profiles at {} degrees as a half-space: \
+             ratio_to_measured compares both",
+            self.lines_deg
+        ))
+    }
+
     /// Above this root mean square slope waves are corrected.
     fn threshold(self) -> Option<f64> {
         self.hybrid.map(|corrected| corrected.rms_slope_threshold)
@@ -240,6 +266,7 @@ pub fn run(
     context.pending.write_rows(FRICTION, &rows)?;
     context.pending.write_rows(BUDGET, &budget(&rows))?;
     let methods = methods::compared(&rows);
+    warnings.extend(models.unlike_lines(&methods));
     if methods::differ(&methods) {
         context.pending.write_rows(METHODS, &methods)?;
     }

@@ -4,7 +4,7 @@ use super::HeightMap;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::plane::{Transform, fast_length};
 use crate::surface::Closure;
-use crate::surface::periodic::{blend_weight, blended_points};
+use crate::surface::periodic::{BLENDED, blend_weight, blended_points};
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -89,7 +89,12 @@ impl PeriodicMap {
         let modes = Modes { points, spectrum: &transform.spectrum };
         let least = resolving(periods, shortest);
         let inside = |kx: f64, ky: f64| is_kept([kx, ky], periods, shortest);
-        let heights = modes.on_grid(least, inside);
+        let mut heights = modes.on_grid(least, inside);
+        let largest = map.heights.iter().fold(0.0_f64, |most, z| most.max(z.abs()));
+        if heights.iter().all(|z| z.abs() <= ROUND_OFF * largest) {
+            // What is left of a level map is round-off.
+            heights.fill(0.0);
+        }
         let kept = heights.iter().map(|z| z * z).sum::<f64>() / heights.len() as f64;
         Ok((Self { heights, points: least, periods, shortest }, (variance - kept).max(0.0)))
     }
@@ -114,6 +119,11 @@ impl PeriodicMap {
             let least = (per_wave * period / self.shortest * (1.0 - ROUND_OFF)).ceil() as usize;
             8 * fast_length(least.div_ceil(8).max(2))
         })
+    }
+
+    /// Whether it has no wave.
+    pub fn is_flat(&self) -> bool {
+        self.heights.iter().all(|z| *z == 0.0)
     }
 
     /// Its root mean square height and gradient, skewness and kurtosis.
@@ -163,6 +173,12 @@ pub(super) fn resolving(periods: [f64; 2], shortest: f64) -> [usize; 2] {
         // One more than two on the shortest wave: its phase is known.
         2 * fast_length(highest + 1)
     })
+}
+
+/// Length in m over which the ends of a blended map pass into each other, by its period.
+pub fn blended_length(period: f64) -> f64 {
+    // Of the window, of which the period is what is left.
+    period * BLENDED / (1.0 - BLENDED)
 }
 
 /// Whether a wave of these numbers in the periods is no shorter than the shortest one.

@@ -34,7 +34,7 @@ pub enum Closure {
 }
 
 /// Share of the window over which its end passes into its beginning.
-const BLENDED: f64 = 0.05;
+pub(super) const BLENDED: f64 = 0.05;
 /// The same tolerance of wavelengths as elsewhere.
 const ROUND_OFF: f64 = 1e-9;
 
