@@ -96,16 +96,12 @@ impl From<&CurveRow> for FrictionAt {
 impl From<&ArealCurveRow> for FrictionAt {
     fn from(row: &ArealCurveRow) -> Self {
         let ArealCurveRow { kind, realisation, speed_mm_s, .. } = *row;
+        let curve = CurveId { kind, realisation, speed_mm_s };
+        let condition = [row.contact_area_fraction, row.pressure_mpa];
         Self {
-            curve: CurveId { kind, realisation, speed_mm_s },
-            given: row.given,
-            contact_area_fraction: row.contact_area_fraction,
-            pressure_mpa: row.pressure_mpa,
-            friction_coefficient: row.friction_coefficient,
             interpolation_error: row.interpolation_error,
             discretisation_error: row.discretisation_error,
-            left_out_error: 0.0,
-            microscale_error: Some(0.0),
+            ..Self::without_errors(curve, row.given, condition, row.friction_coefficient)
         }
     }
 }
@@ -113,16 +109,12 @@ impl From<&ArealCurveRow> for FrictionAt {
 impl From<&FemCurveRow> for FrictionAt {
     fn from(row: &FemCurveRow) -> Self {
         let FemCurveRow { kind, realisation, speed_mm_s, .. } = *row;
+        let curve = CurveId { kind, realisation, speed_mm_s };
+        let condition = [row.contact_area_fraction, row.pressure_mpa];
         Self {
-            curve: CurveId { kind, realisation, speed_mm_s },
-            given: row.given,
-            contact_area_fraction: row.contact_area_fraction,
-            pressure_mpa: row.pressure_mpa,
-            friction_coefficient: row.friction_coefficient,
             interpolation_error: row.interpolation_error,
             discretisation_error: row.discretisation_error,
-            left_out_error: 0.0,
-            microscale_error: Some(0.0),
+            ..Self::without_errors(curve, row.given, condition, row.friction_coefficient)
         }
     }
 }
@@ -130,21 +122,33 @@ impl From<&FemCurveRow> for FrictionAt {
 impl From<&TheoryRow> for FrictionAt {
     fn from(row: &TheoryRow) -> Self {
         let TheoryRow { kind, realisation, speed_mm_s, .. } = *row;
+        let curve = CurveId { kind, realisation, speed_mm_s };
+        let condition = [row.contact_area_fraction, row.pressure_mpa];
+        Self::without_errors(curve, row.given, condition, row.friction_coefficient)
+    }
+}
+
+impl FrictionAt {
+    /// Friction at a contact area fraction and a pressure in MPa, with all waves and no estimate of its error.
+    fn without_errors(
+        curve: CurveId,
+        given: Given,
+        [contact_area_fraction, pressure_mpa]: [f64; 2],
+        friction_coefficient: f64,
+    ) -> Self {
         Self {
-            curve: CurveId { kind, realisation, speed_mm_s },
-            given: row.given,
-            contact_area_fraction: row.contact_area_fraction,
-            pressure_mpa: row.pressure_mpa,
-            friction_coefficient: row.friction_coefficient,
+            curve,
+            given,
+            contact_area_fraction,
+            pressure_mpa,
+            friction_coefficient,
             interpolation_error: 0.0,
             discretisation_error: None,
             left_out_error: 0.0,
             microscale_error: Some(0.0),
         }
     }
-}
 
-impl FrictionAt {
     /// What it is given for, with the value that all realisations share.
     pub fn condition(&self) -> Condition {
         Condition::of(self.given, self.contact_area_fraction, self.pressure_mpa)

@@ -108,6 +108,45 @@ fn ridges_have_the_friction_of_their_profile() {
     }
 }
 
+fn tables_are_averages_of_the_first_direction(view: &RunView) {
+    let curves = view.rows(AREAL_CURVES).unwrap();
+    let rows = view.rows(FRICTION).unwrap();
+    let areal: Vec<_> = rows.iter().filter(|row| row.kind.method.is_areal()).collect();
+    assert_eq!(areal.len(), 3 * 2);
+    for row in &areal {
+        let forward = curves.iter().filter(|curve| {
+            curve.kind == row.kind && curve.angle_deg == 0.0 && curve.given == row.given
+        });
+        let friction: Vec<f64> = forward.map(|curve| curve.friction_coefficient).collect();
+        assert_eq!(row.realisations, friction);
+        assert!(
+            (row.windows, row.shortest_wavelength_mm) == (4, 0.4) && row.error_estimate > Some(0.0)
+        );
+    }
+    let compared = view.rows(METHODS).unwrap();
+    let ratio = compared.iter().find(|row| row.kind == SurfaceKind::of(Method::ArealMeasured));
+    // Lines need less pressure for an area, and have less friction at it.
+    let ratio = ratio.unwrap().ratio_to_measured;
+    assert!((0.5..3.0).contains(&ratio) && ratio != 1.0, "{ratio}");
+    let budget = view.rows(BUDGET).unwrap();
+    let of_maps = budget.iter().filter(|row| row.kind.method == Method::ArealMeasured);
+    assert!(of_maps.clone().any(|row| row.part == Part::Scans));
+    assert!(of_maps.clone().any(|row| row.part == Part::Grid && row.remedy.contains("areal.")));
+}
+
+fn fields_carry_the_load(view: &RunView) {
+    let fields = view.read_arrays(AREAL_FIELDS).unwrap();
+    assert_eq!(fields.len(), 3 * 4 * 2 * 2);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    for field in fields.iter().filter(|field| field.name.ends_with("pressure")) {
+        let asperity::artifact::Attribute::Float(pressure) = field.attributes["mean_pressure_pa"]
+        else {
+            panic!("{field:?}")
+        };
+        assert!((mean(&field.values) / pressure - 1.0).abs() < 1e-9);
+    }
+}
+
 #[test]
 fn maps_go_through_the_chain_beside_their_rows() {
     let campaign = road();
@@ -154,38 +193,8 @@ fn maps_go_through_the_chain_beside_their_rows() {
     assert_eq!(curves.len(), 3 * 4 * 2 * 2);
     let solves = view.rows(AREAL_SOLVES).unwrap();
     assert!(solves.iter().all(|row| row.residual <= 1e-10 && row.points_x == 128));
-    let rows = view.rows(FRICTION).unwrap();
-    let areal: Vec<_> = rows.iter().filter(|row| row.kind.method.is_areal()).collect();
-    assert_eq!(areal.len(), 3 * 2);
-    for row in &areal {
-        let forward = curves.iter().filter(|curve| {
-            curve.kind == row.kind && curve.angle_deg == 0.0 && curve.given == row.given
-        });
-        let friction: Vec<f64> = forward.map(|curve| curve.friction_coefficient).collect();
-        assert_eq!(row.realisations, friction);
-        assert!(
-            (row.windows, row.shortest_wavelength_mm) == (4, 0.4) && row.error_estimate > Some(0.0)
-        );
-    }
-    let compared = view.rows(METHODS).unwrap();
-    let ratio = compared.iter().find(|row| row.kind == SurfaceKind::of(Method::ArealMeasured));
-    // Lines need less pressure for an area, and have less friction at it.
-    let ratio = ratio.unwrap().ratio_to_measured;
-    assert!((0.5..3.0).contains(&ratio) && ratio != 1.0, "{ratio}");
-    let budget = view.rows(BUDGET).unwrap();
-    let of_maps = budget.iter().filter(|row| row.kind.method == Method::ArealMeasured);
-    assert!(of_maps.clone().any(|row| row.part == Part::Scans));
-    assert!(of_maps.clone().any(|row| row.part == Part::Grid && row.remedy.contains("areal.")));
-    let fields = view.read_arrays(AREAL_FIELDS).unwrap();
-    assert_eq!(fields.len(), 3 * 4 * 2 * 2);
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    for field in fields.iter().filter(|field| field.name.ends_with("pressure")) {
-        let asperity::artifact::Attribute::Float(pressure) = field.attributes["mean_pressure_pa"]
-        else {
-            panic!("{field:?}")
-        };
-        assert!((mean(&field.values) / pressure - 1.0).abs() < 1e-9);
-    }
+    tables_are_averages_of_the_first_direction(&view);
+    fields_carry_the_load(&view);
     // Nothing is computed twice.
     assert!(try_run(&recipe(&campaign), &out, Selection::default()).unwrap().is_empty());
     // What was solved is taken from the store: another area asks for its own solves alone.

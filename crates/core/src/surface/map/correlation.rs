@@ -87,7 +87,7 @@ impl ArealCorrelation {
         self.plane.lags
     }
 
-    /// C at the lag `(k dx, l dy)` of the grid; none beyond the largest lags or without pairs.
+    /// C at the lag `(k dx, l dy)` of the grid; `None` beyond the largest lags or without pairs.
     pub fn at(&self, [k, l]: [isize; 2]) -> Option<CorrelationSample> {
         let [dx, dy] = self.plane.spacing;
         let lag = (k as f64 * dx).hypot(l as f64 * dy);
@@ -121,7 +121,8 @@ impl ArealCorrelation {
     ///
     /// The length at which C reaches the variance is taken along 36 directions, and `1 / length²` fitted by `a - b cos
     /// 2 (angle - run)`, which is exact for elliptic contours and for ridges; it counts as 0 where C does not reach the
-    /// variance within the largest lags. None if it does so in no direction.
+    /// variance within the largest lags. Returns `None` if C does not reach the
+    /// variance in any direction.
     pub fn anisotropy(&self) -> Option<Anisotropy> {
         let inverse_square = |angle: f64| {
             let (step, length) = self.plane.ray(angle);

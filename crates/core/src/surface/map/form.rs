@@ -118,7 +118,7 @@ pub fn remove_form(map: &mut HeightMap, form: FormOfMap) -> Result<RemovedMapFor
     Ok(RemovedMapForm { legendre_coefficients_mm, rms_mm: rms * 1e3, tilt })
 }
 
-/// Slopes `[dz/dx, dz/dy]` of the least-squares plane of the valid heights; none where they lie on one line.
+/// Slopes `[dz/dx, dz/dy]` of the least-squares plane of the valid heights; `None` if they lie on one line.
 pub fn tilt(map: &HeightMap) -> Option<[f64; 2]> {
     let basis = Basis::new(map.points, 1);
     let equations =

@@ -81,7 +81,7 @@ impl LagPlane {
         Self { lags, spacing: map.spacing, values, pairs }
     }
 
-    /// Mean and number of pairs at a lag; none outside the plane and without pairs.
+    /// Mean and number of pairs at a lag; `None` outside the plane or without pairs.
     pub fn get(&self, [k, l]: [isize; 2]) -> Option<(f64, f64)> {
         let (k, l) = if l < 0 { (-k, -l) } else { (k, l) };
         let column = usize::try_from(k + self.lags[0] as isize).ok()?;
@@ -159,7 +159,7 @@ impl LagPlane {
 
 impl LagPlane {
     /// Number of steps along a ray, from lag zero, after which the mean first crosses `level` (m²). Between two points the
-    /// mean follows the cubic polynomial through four. None if it does not cross within the plane.
+    /// mean follows the cubic polynomial through four. Returns `None` if it does not cross within the plane.
     pub fn crossing(&self, step: [f64; 2], level: f64) -> Option<f64> {
         let at = |n: f64| self.between(step.map(|c| n * c)).map(|(value, _)| value - level);
         let start = at(0.0)?;
@@ -189,7 +189,7 @@ impl LagPlane {
 
     /// Shortest and longest distance in m, over all directions, at which the mean first crosses `level` along a ray from
     /// lag zero to the border of the plane, and whether it does so in every direction: the longest is a lower bound if
-    /// not. None if it crosses in no direction.
+    /// not. Returns `None` if it does not cross in any direction.
     pub fn crossings(&self, level: f64) -> Option<(f64, f64, bool)> {
         let [x, y] = self.lags.map(|lag| lag as isize);
         let sides = (0..=y).flat_map(|l| [[-x, l], [x, l]]);

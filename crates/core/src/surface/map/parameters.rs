@@ -40,8 +40,8 @@ pub struct ArealParameters {
     /// `sqrt(1 + zx² + zy²) - 1` over the four corner triangles of each cell. That is the area of the triangulation of
     /// ISO 25178-2:2021 D.3, the mean of those by either diagonal.
     pub sdr: f64,
-    /// Sal, the shortest distance in any direction after which the autocorrelation falls to 0.2. None if it does so
-    /// nowhere within half the lengths of the map.
+    /// Sal, the shortest distance in any direction after which the autocorrelation falls to 0.2. `None` if it does not
+    /// within half the lengths of the map.
     pub sal: Option<f64>,
     /// Str, Sal over the longest such distance: 0 for ridges, 1 for an isotropic map.
     pub str: Option<f64>,

@@ -135,7 +135,7 @@ impl Inspection<'_> {
         self.reports.push(report.with_effect(before, after));
     }
 
-    /// The tilt of the map; none where its heights lie on one line.
+    /// The tilt of the map; `None` if its heights lie on one line.
     fn tilt(&mut self) -> Option<[f64; 2]> {
         let slopes = tilt(self.map)?;
         let criterion = "least-squares plane; removed as `form` says".into();

@@ -34,7 +34,7 @@ pub struct MapReport {
     pub cells_missing: usize,
     /// Cells at the borders that fill no window.
     pub cells_left_out: usize,
-    /// Slopes of the least-squares plane of the map as a whole in mm/mm; none where its points lie on one line.
+    /// Slopes in mm/mm of the least-squares plane of the whole map; `None` if its points lie on one line.
     pub tilt: Option<[f64; 2]>,
     /// The faults that were looked for, in the order of the work.
     pub faults: Vec<FaultReport>,
@@ -61,8 +61,8 @@ pub struct MapWindowReport {
     pub origin_mm: [f64; 2],
     /// Share of missing cells, between 0 and 1.
     pub missing_share: f64,
-    /// Why the window was rejected; none for a window that was kept.
+    /// Why the window was rejected; `None` if it was kept.
     pub rejected: Option<String>,
-    /// The form removed from the window; none for a window that was rejected.
+    /// The form removed from the window; `None` if it was rejected.
     pub form: Option<RemovedMapForm>,
 }

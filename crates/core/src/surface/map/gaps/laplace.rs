@@ -9,7 +9,7 @@ const DENSE: usize = 32;
 /// Residual of larger ones, over the right side.
 const TOLERANCE: f64 = 1e-12;
 
-/// Heights of the points of a gap; none where the iteration does not converge. `places` holds the place of each point of
+/// Heights of the points of a gap; `None` if the iteration does not converge. `places` holds the place of each point of
 /// the gap in its list.
 pub(super) fn solve(map: &HeightMap, gap: &[usize], places: &[u32]) -> Option<Vec<f64>> {
     let equations = Equations::new(map, gap, places);
