@@ -8,6 +8,7 @@
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
 //! | [`rubber`] | generalised Maxwell model, temperature, finite strain, its fit to measured moduli |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
+//! | [`interface`] | shear in the area of contact: its law, its fit, its effect on the contact |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
 //! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
@@ -23,6 +24,7 @@
 pub mod contact;
 pub mod error_kind;
 pub mod fem;
+pub mod interface;
 pub mod multiscale;
 pub mod numerics;
 pub mod reference;

@@ -7,6 +7,7 @@
 //! | [`interpolation`] | cubic Hermite interpolants |
 //! | [`interrupt`] | a flag by which a user stops a long computation |
 //! | [`krylov`] | GMRES for matrix-free, nonsymmetric systems |
+//! | `least_squares` | nonlinear least squares: a trust region on the Gauss-Newton model |
 //! | `plane` | Fourier transform of real fields over a plane |
 //! | [`statistics`] | means, spreads and confidence intervals of small samples, lines through points |
 
@@ -15,6 +16,7 @@ pub mod direct;
 pub mod interpolation;
 pub mod interrupt;
 pub mod krylov;
+pub(crate) mod least_squares;
 pub(crate) mod plane;
 pub mod statistics;
 

@@ -1,7 +1,7 @@
 //! WLF and Arrhenius through shift factors, by least squares on `log10 a_T`.
 
-use super::least_squares::{LeastSquares, minimise};
 use super::{FittedLaw, FittedVertical, ShiftFactor};
+use crate::numerics::least_squares::{LeastSquares, minimise};
 use crate::numerics::statistics::student_t_975;
 use crate::rubber::{ShiftLaw, VerticalShift};
 use nalgebra::{DMatrix, DVector};
@@ -143,7 +143,8 @@ fn wlf(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
     let problem = Wlf { shifts, reference_c, lowest_difference };
     // The constants that Williams, Landel & Ferry found to suit many polymers.
     let start = DVector::from_vec(vec![8.86_f64.ln(), 101.6_f64.ln()]);
-    let minimum = minimise(&problem, start).filter(super::least_squares::Minimum::converged)?;
+    let minimum =
+        minimise(&problem, start).filter(crate::numerics::least_squares::Minimum::converged)?;
     let coefficients = problem.coefficients(&minimum.parameters);
     let [c1, c2_k] = coefficients;
     if !(c2_k > 0.0 && c2_k < LARGEST_C2_K) {

@@ -17,7 +17,6 @@
 //! | `sweep` | measured sweeps, options, and what may be wrong with them |
 //! | `chain`, `shift`, `join` | the order of the sweeps and first shift factors, by storage modulus, loss modulus or loss factor |
 //! | `model` | residuals of a Prony series and their derivatives |
-//! | `least_squares` | a trust region on the Gauss-Newton model |
 //! | `terms`, `verticals` | the number of terms; vertical factors fitted with the shifts |
 //! | `law` | WLF and Arrhenius through shift factors |
 //! | `covariance`, `result` | intervals; what a fit gives |
@@ -26,7 +25,6 @@ mod chain;
 mod covariance;
 mod join;
 mod law;
-mod least_squares;
 mod model;
 mod result;
 mod shift;

@@ -12,7 +12,7 @@
 //! its limits (as in MINUIT). Free vertical factors add a residual for each pair of neighbours, see
 //! [`FreeVerticals`].
 
-use super::least_squares::LeastSquares;
+use crate::numerics::least_squares::LeastSquares;
 use nalgebra::{DMatrix, DVector};
 
 /// Times nearer to their limit than this, of half the range, are at the limit.

@@ -13,9 +13,9 @@
 //!
 //! but a misfit below a thousandth is not reduced further.
 
-use super::least_squares::{Minimum, ROUND_OFF, minimise};
 use super::model::{Prony, Series, weights};
 use super::{Candidate, FitError};
+use crate::numerics::least_squares::{Minimum, ROUND_OFF, minimise};
 use nalgebra::{DMatrix, DVector};
 
 /// More terms could not be distinguished by data with noise.

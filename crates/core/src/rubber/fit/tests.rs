@@ -219,7 +219,7 @@ fn the_jacobian_is_that_of_differences() {
     let ln_verticals = vec![0.1, 0.2, 0.05, -0.1, 0.0, -0.3, 0.1];
     let series = model::Series { ln_equilibrium: 15.0, terms, ln_verticals, ..chain.start() };
     let at = problem.pack(&series);
-    use least_squares::LeastSquares;
+    use crate::numerics::least_squares::LeastSquares;
     let exact = problem.jacobian(&at);
     for column in 0..at.len() {
         let moved = |step: f64| {

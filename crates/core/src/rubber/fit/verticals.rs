@@ -18,10 +18,10 @@
 //! as good as the chosen one, then have other shifts, and so have fits with fixed factors: none, ρT or the ends of the
 //! interval about it. The largest difference between the chosen fit and one that is as good is added to the interval.
 
-use super::least_squares::{ROUND_OFF, minimise};
 use super::model::{FreeVerticals, Prony, Series};
 use super::terms::{self, Fitted, judge};
 use super::{Candidate, FitError};
+use crate::numerics::least_squares::{ROUND_OFF, minimise};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Standard deviation of the change of `ln(b / ρT)` over a kelvin; it grows with the root of the

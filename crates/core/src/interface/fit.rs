@@ -1,0 +1,432 @@
+//! Constants of the shear law from measured friction.
+
+use super::ShearError;
+use super::law::{Activation, GaussianShear, ShearLaw, check_temperature, positive};
+use crate::numerics::least_squares::{LeastSquares, Minimum, minimise};
+use crate::numerics::statistics::student_t_975;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::LN_10;
+
+/// Measured friction beside what is computed for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredFriction {
+    /// Sliding speed in m/s.
+    pub speed: f64,
+    /// Temperature in °C.
+    pub temperature_c: f64,
+    /// Mean pressure in Pa.
+    pub pressure: f64,
+    /// Measured friction coefficient.
+    pub friction: f64,
+    /// Computed hysteretic friction coefficient there.
+    pub hysteretic: f64,
+    /// Computed contact area fraction there.
+    pub contact_area_fraction: f64,
+}
+
+/// What of a [`GaussianShear`] is not fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fixed {
+    /// Speed v_0 in m/s of the largest stress.
+    pub peak_speed: Option<f64>,
+    /// c.
+    pub width: Option<f64>,
+    /// Activation energy ε in eV.
+    pub energy_ev: Option<f64>,
+}
+
+/// A fitted constant with the ends of its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// The constant.
+    pub value: f64,
+    /// Ends of the interval; `None` for a constant that was fixed.
+    pub ends: Option<[f64; 2]>,
+}
+
+/// A fitted shear law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedShear {
+    /// The law.
+    pub law: GaussianShear,
+    /// τ_0 in Pa.
+    pub peak_stress: Interval,
+    /// v_0 in m/s.
+    pub peak_speed: Interval,
+    /// c.
+    pub width: Interval,
+    /// ε in eV; `None` without a shift.
+    pub energy_ev: Option<Interval>,
+    /// Root mean square of [`Self::residuals`].
+    pub rms: f64,
+    /// Predicted minus measured friction coefficients, in the order of the measurements.
+    pub residuals: Vec<f64>,
+    /// Measurements less fitted constants.
+    pub degrees_of_freedom: usize,
+}
+
+/// Fits a [`GaussianShear`] to measured friction: least squares of `μ_h + τ_f A / (p A_0) - μ`, all measurements of the
+/// same weight.
+///
+/// `reference_c` is T_0 in °C; without it the law has no shift, and the energy must not be fixed. The intervals are those of
+/// the linearised fit in the logarithms of the constants (in ε itself) with Student's t: they hold the scatter of the measurements about the law,
+/// not the error of computed hysteresis and area.
+///
+/// # Errors
+/// [`ShearError::OutOfRange`], [`ShearError::TooFewMeasurements`], [`ShearError::OneTemperature`],
+/// [`ShearError::NothingLeft`], [`ShearError::NotConverged`] where the measurements do not determine the constants.
+pub fn fit_shear(
+    measured: &[MeasuredFriction],
+    reference_c: Option<f64>,
+    fixed: Fixed,
+) -> Result<FittedShear, ShearError> {
+    check(measured, reference_c, fixed)?;
+    let problem = Problem {
+        measured,
+        reference_c: reference_c.unwrap_or(20.0),
+        fixed,
+        shifted: reference_c.is_some(),
+    };
+    let count = problem.constants();
+    if measured.len() <= count {
+        return Err(ShearError::TooFewMeasurements {
+            measurements: measured.len(),
+            constants: count,
+        });
+    }
+    if measured.iter().all(|m| m.friction <= m.hysteretic) {
+        return Err(ShearError::NothingLeft);
+    }
+    let best = problem
+        .starts()
+        .into_iter()
+        .filter_map(|start| minimise(&problem, start))
+        .filter(Minimum::converged)
+        .min_by(|a, b| a.rms.total_cmp(&b.rms))
+        .ok_or(ShearError::NotConverged)?;
+    problem.fitted(&best)
+}
+
+fn check(
+    measured: &[MeasuredFriction],
+    reference_c: Option<f64>,
+    fixed: Fixed,
+) -> Result<(), ShearError> {
+    for m in measured {
+        positive("the measured speed in m/s", m.speed)?;
+        positive("the mean pressure in Pa", m.pressure)?;
+        positive("the computed contact area fraction", m.contact_area_fraction)?;
+        check_temperature("the measured temperature in °C", m.temperature_c)?;
+        let finite =
+            [("the measured friction", m.friction), ("the hysteretic friction", m.hysteretic)];
+        for (quantity, value) in finite {
+            if !value.is_finite() {
+                return Err(ShearError::OutOfRange { quantity, value, range: "finite" });
+            }
+        }
+    }
+    fixed.peak_speed.map_or(Ok(()), |v| positive("the fixed speed in m/s", v))?;
+    fixed.width.map_or(Ok(()), |c| positive("the fixed width", c))?;
+    let Some(reference_c) = reference_c else { return Ok(()) };
+    check_temperature("the reference temperature in °C", reference_c)?;
+    let one = measured.windows(2).all(|pair| pair[0].temperature_c == pair[1].temperature_c);
+    if one && fixed.energy_ev.is_none() { Err(ShearError::OneTemperature) } else { Ok(()) }
+}
+
+/// The constants as coordinates: `ln τ_0`, `log10 v_0`, `ln c`, ε, without those that are fixed.
+struct Problem<'a> {
+    measured: &'a [MeasuredFriction],
+    reference_c: f64,
+    fixed: Fixed,
+    shifted: bool,
+}
+
+/// A constant of the law.
+#[derive(Clone, Copy, PartialEq)]
+enum Constant {
+    Stress,
+    Speed,
+    Width,
+    Energy,
+}
+
+impl Problem<'_> {
+    /// The fitted constants, in the order of the coordinates.
+    fn free(&self) -> Vec<Constant> {
+        let free = [
+            (Constant::Stress, true),
+            (Constant::Speed, self.fixed.peak_speed.is_none()),
+            (Constant::Width, self.fixed.width.is_none()),
+            (Constant::Energy, self.shifted && self.fixed.energy_ev.is_none()),
+        ];
+        free.into_iter().filter(|(_, free)| *free).map(|(constant, _)| constant).collect()
+    }
+
+    fn constants(&self) -> usize {
+        self.free().len()
+    }
+
+    fn law(&self, coordinates: &DVector<f64>) -> GaussianShear {
+        let free = self.free();
+        let at = |constant| free.iter().position(|c| *c == constant).map(|k| coordinates[k]);
+        let energy = at(Constant::Energy).or(self.fixed.energy_ev).filter(|_| self.shifted);
+        GaussianShear {
+            peak_stress: at(Constant::Stress).map_or(1.0, f64::exp),
+            peak_speed: at(Constant::Speed)
+                .map_or_else(|| self.fixed.peak_speed.unwrap_or(1.0), |d| 10.0_f64.powf(d)),
+            width: at(Constant::Width).map_or_else(|| self.fixed.width.unwrap_or(1.0), f64::exp),
+            shift: energy.map(|energy_ev| Activation { energy_ev, reference_c: self.reference_c }),
+        }
+    }
+
+    /// Decades of a measured speed above v_0, and their derivative by ε.
+    fn decades(&self, law: &GaussianShear, m: &MeasuredFriction) -> (f64, f64) {
+        let one_ev = Activation { energy_ev: 1.0, reference_c: self.reference_c };
+        let by_energy = one_ev.ln_factor(m.temperature_c) / LN_10;
+        let energy = law.shift.map_or(0.0, |shift| shift.energy_ev);
+        ((m.speed / law.peak_speed).log10() + energy * by_energy, by_energy)
+    }
+
+    /// Adhesive friction for τ_0 = 1 Pa.
+    fn shape(&self, law: &GaussianShear, m: &MeasuredFriction) -> f64 {
+        let (decades, _) = self.decades(law, m);
+        (-law.width * decades * decades).exp() * m.contact_area_fraction / m.pressure
+    }
+
+    /// Where to start: the best of a grid of v_0, c and ε with the stress that suits them, so that no minimum in reach is
+    /// missed.
+    fn starts(&self) -> Vec<DVector<f64>> {
+        let or = |fixed: Option<f64>, grid: Vec<f64>| fixed.map_or(grid, |value| vec![value]);
+        let widths = or(self.fixed.width, vec![0.01, 0.03, 0.1, 0.3, 1.0]);
+        let energies = if self.shifted {
+            or(self.fixed.energy_ev, vec![0.3, 0.6, 1.0, 1.5, 2.0])
+        } else {
+            vec![0.0]
+        };
+        let speeds = or(
+            self.fixed.peak_speed,
+            (-18..=8).map(|half| 10.0_f64.powf(0.5 * f64::from(half))).collect(),
+        );
+        let mut starts: Vec<(f64, DVector<f64>)> = Vec::new();
+        for (width, energy_ev, peak_speed) in combinations(&widths, &energies, &speeds) {
+            let shift =
+                self.shifted.then_some(Activation { energy_ev, reference_c: self.reference_c });
+            let law = GaussianShear { peak_stress: 1.0, peak_speed, width, shift };
+            let shapes: Vec<f64> = self.measured.iter().map(|m| self.shape(&law, m)).collect();
+            let left = self.measured.iter().map(|m| m.friction - m.hysteretic);
+            let (mut along, mut square) = (0.0, 0.0);
+            for (shape, left) in shapes.iter().zip(left.clone()) {
+                along += shape * left;
+                square += shape * shape;
+            }
+            let stress = along / square;
+            if !(stress > 0.0 && stress.is_finite()) {
+                continue;
+            }
+            let misfit: f64 = shapes.iter().zip(left).map(|(s, y)| (stress * s - y).powi(2)).sum();
+            let coordinate = |constant: Constant| match constant {
+                Constant::Stress => stress.ln(),
+                Constant::Speed => peak_speed.log10(),
+                Constant::Width => width.ln(),
+                Constant::Energy => energy_ev,
+            };
+            let start =
+                DVector::from_iterator(self.constants(), self.free().into_iter().map(coordinate));
+            starts.push((misfit, start));
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.into_iter().take(STARTS).map(|(_, start)| start).collect()
+    }
+
+    fn fitted(&self, minimum: &Minimum) -> Result<FittedShear, ShearError> {
+        let at = &minimum.parameters;
+        let law = self.law(at);
+        ShearLaw::Gaussian(law).validate().map_err(|_| ShearError::NotConverged)?;
+        let residuals = self.residuals(at);
+        let freedom = self.measured.len() - self.constants();
+        let noise = residuals.norm() / (freedom as f64).sqrt();
+        let svd = self.jacobian(at).svd(false, true);
+        let (values, directions) =
+            (&svd.singular_values, svd.v_t.as_ref().ok_or(ShearError::NotConverged)?);
+        if values.min() < UNDETERMINED * values.max() {
+            return Err(ShearError::NotConverged);
+        }
+        let t = student_t_975(freedom as f64);
+        let half_width = |k: usize| -> f64 {
+            let terms = (0..values.len()).map(|j| (directions[(j, k)] / values[j]).powi(2));
+            t * noise * terms.sum::<f64>().sqrt()
+        };
+        let free = self.free();
+        let interval = |constant: Constant, value: f64| {
+            let ends = free.iter().position(|c| *c == constant).map(|k| {
+                let half = half_width(k);
+                [-half, half].map(|change| match constant {
+                    Constant::Stress | Constant::Width => value * change.exp(),
+                    Constant::Speed => value * 10.0_f64.powf(change),
+                    Constant::Energy => value + change,
+                })
+            });
+            Interval { value, ends }
+        };
+        Ok(FittedShear {
+            law,
+            peak_stress: interval(Constant::Stress, law.peak_stress),
+            peak_speed: interval(Constant::Speed, law.peak_speed),
+            width: interval(Constant::Width, law.width),
+            energy_ev: law.shift.map(|shift| interval(Constant::Energy, shift.energy_ev)),
+            rms: residuals.norm() / (residuals.len() as f64).sqrt(),
+            residuals: residuals.iter().copied().collect(),
+            degrees_of_freedom: freedom,
+        })
+    }
+}
+
+/// Starts that are followed to a minimum.
+const STARTS: usize = 6;
+/// Ratio of singular values of the Jacobian below which measurements do not determine the constants.
+const UNDETERMINED: f64 = 1e-8;
+
+/// All combinations of three lists.
+fn combinations<'a>(
+    a: &'a [f64],
+    b: &'a [f64],
+    c: &'a [f64],
+) -> impl Iterator<Item = (f64, f64, f64)> + 'a {
+    a.iter().flat_map(move |x| b.iter().flat_map(move |y| c.iter().map(move |z| (*x, *y, *z))))
+}
+
+impl LeastSquares for Problem<'_> {
+    fn residuals(&self, coordinates: &DVector<f64>) -> DVector<f64> {
+        let law = self.law(coordinates);
+        let of = |m: &MeasuredFriction| {
+            m.hysteretic + law.peak_stress * self.shape(&law, m) - m.friction
+        };
+        DVector::from_iterator(self.measured.len(), self.measured.iter().map(of))
+    }
+
+    fn jacobian(&self, coordinates: &DVector<f64>) -> DMatrix<f64> {
+        let law = self.law(coordinates);
+        let free = self.free();
+        DMatrix::from_fn(self.measured.len(), free.len(), |row, column| {
+            let m = &self.measured[row];
+            let (decades, by_energy) = self.decades(&law, m);
+            let adhesive = law.peak_stress * self.shape(&law, m);
+            adhesive
+                * match free[column] {
+                    Constant::Stress => 1.0,
+                    Constant::Speed => 2.0 * law.width * decades,
+                    Constant::Width => -law.width * decades * decades,
+                    Constant::Energy => -2.0 * law.width * decades * by_energy,
+                }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law() -> GaussianShear {
+        let shift = Some(Activation { energy_ev: 0.97, reference_c: 20.0 });
+        GaussianShear { peak_stress: 6.5e6, peak_speed: 6e-3, width: 0.1, shift }
+    }
+
+    /// Friction by a law, with an error that alternates in sign.
+    fn measured(law: GaussianShear, celsius: &[f64], error: f64) -> Vec<MeasuredFriction> {
+        let mut all = Vec::new();
+        for temperature_c in celsius {
+            for k in 0..7 {
+                let speed = 10.0_f64.powf(-5.0 + f64::from(k));
+                let (pressure, hysteretic) = (3e5, 0.3 + 0.05 * f64::from(k));
+                let contact_area_fraction = 0.05 / (1.0 + f64::from(k));
+                let stress = ShearLaw::Gaussian(law).stress(speed, *temperature_c).unwrap();
+                let sign = if all.len() % 2 == 0 { 1.0 } else { -1.0 };
+                let friction =
+                    hysteretic + stress * contact_area_fraction / pressure + sign * error;
+                all.push(MeasuredFriction {
+                    speed,
+                    temperature_c: *temperature_c,
+                    pressure,
+                    friction,
+                    hysteretic,
+                    contact_area_fraction,
+                });
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn exact_friction_gives_the_law_back() {
+        let fit =
+            fit_shear(&measured(law(), &[0.0, 20.0, 60.0], 0.0), Some(20.0), Fixed::default())
+                .unwrap();
+        let found = [
+            fit.law.peak_stress,
+            fit.law.peak_speed,
+            fit.law.width,
+            fit.law.shift.unwrap().energy_ev,
+        ];
+        for (found, expected) in found.into_iter().zip([6.5e6, 6e-3, 0.1, 0.97]) {
+            approx::assert_relative_eq!(found, expected, max_relative = 1e-7);
+        }
+        assert!(fit.rms < 1e-9 && fit.degrees_of_freedom == 17, "{}", fit.rms);
+    }
+
+    #[test]
+    fn one_temperature_needs_no_energy_and_does_not_determine_one() {
+        let law = GaussianShear { shift: None, ..law() };
+        let measured = measured(law, &[20.0], 0.0);
+        let fit = fit_shear(&measured, None, Fixed::default()).unwrap();
+        approx::assert_relative_eq!(fit.law.peak_speed, 6e-3, max_relative = 1e-7);
+        assert!(fit.energy_ev.is_none());
+        let error = fit_shear(&measured, Some(20.0), Fixed::default()).unwrap_err();
+        assert!(matches!(error, ShearError::OneTemperature));
+        let fixed = Fixed { energy_ev: Some(0.97), ..Fixed::default() };
+        let fit = fit_shear(&measured, Some(20.0), fixed).unwrap();
+        assert_eq!(fit.energy_ev.unwrap(), Interval { value: 0.97, ends: None });
+    }
+
+    /// Intervals of many noisy sets hold the law as often as they say.
+    #[test]
+    fn intervals_hold_the_law_in_95_of_100_sets() {
+        use rand::{RngExt, SeedableRng};
+        let mut random = rand_pcg::Pcg64::seed_from_u64(7);
+        let (sets, mut held) = (400, [0; 4]);
+        for _ in 0..sets {
+            let mut measured = measured(law(), &[0.0, 20.0, 60.0], 0.0);
+            for m in &mut measured {
+                // A sum of twelve is normally distributed to a few parts in a thousand.
+                let normal: f64 = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+                m.friction += 0.01 * normal;
+            }
+            let fit = fit_shear(&measured, Some(20.0), Fixed::default()).unwrap();
+            let intervals = [fit.peak_stress, fit.peak_speed, fit.width, fit.energy_ev.unwrap()];
+            for (k, (interval, truth)) in intervals.iter().zip([6.5e6, 6e-3, 0.1, 0.97]).enumerate()
+            {
+                let [low, high] = interval.ends.unwrap();
+                held[k] += usize::from(low <= truth && truth <= high);
+            }
+        }
+        // 95 % of 400 sets have a standard deviation of 1.1 %.
+        for count in held {
+            let share = count as f64 / f64::from(sets);
+            assert!((0.915..0.985).contains(&share), "{held:?}");
+        }
+    }
+
+    #[test]
+    fn measurements_that_determine_nothing_are_refused() {
+        let all = measured(law(), &[20.0], 0.0);
+        let few = fit_shear(&all[..3], None, Fixed::default()).unwrap_err();
+        assert!(few.to_string().contains("at least 4"), "{few}");
+        let below: Vec<_> = all.iter().map(|m| MeasuredFriction { friction: 0.1, ..*m }).collect();
+        assert!(matches!(fit_shear(&below, None, Fixed::default()), Err(ShearError::NothingLeft)));
+        let nan: Vec<_> =
+            all.iter().map(|m| MeasuredFriction { friction: f64::NAN, ..*m }).collect();
+        assert!(fit_shear(&nan, None, Fixed::default()).is_err());
+        // One speed, many times.
+        let one = vec![all[3]; 8];
+        assert!(fit_shear(&one, None, Fixed::default()).is_err());
+    }
+}
