@@ -12,6 +12,7 @@ const PROGRAM: &[&str] = &[
     "rubber",
     "artifact",
     "stages",
+    "measurement",
     "recipe",
     "report",
     "pipeline",
@@ -29,9 +30,11 @@ const MECHANICS: &[&str] = &[
     "rubber",
     "reference",
     "contact",
+    "interface",
     "multiscale",
     "fem",
     "theory",
+    "water",
 ];
 
 /// Every Rust file of a top module: `NAME.rs` and all in `NAME/`.

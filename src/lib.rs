@@ -28,9 +28,11 @@
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
 //! | [`rubber`] | generalised Maxwell model, its fit to measured moduli; here with its file |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
+//! | [`interface`] | shear in the area of contact: its law, its fit, its effect on the contact |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
 //! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
+//! | [`water`] | sealed pools of a map, squeeze-out of a film |
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`numerics`] | mathematics without physics: Krylov, interpolation, statistics |
 //!
@@ -45,6 +47,7 @@
 //! | [`plot`] | figures as descriptions, drawn all alike |
 //! | [`artifact`] | Arrow, HDF5, manifests, digests, the store; nothing else knows these formats |
 //! | [`stages`] | one file a stage: parameters, row types, one function |
+//! | [`measurement`] | measured friction, and what a run has beside it |
 //! | [`recipe`] | the TOML file that says what a run does |
 //! | [`report`] | tables and figures for people |
 //! | [`pipeline`] | the one function that wires the stages |
@@ -61,7 +64,7 @@
 //! are NaN and nothing else is.
 
 pub use asperity_core::{
-    contact, error_kind, fem, multiscale, numerics, reference, surface, theory,
+    contact, error_kind, fem, interface, multiscale, numerics, reference, surface, theory, water,
 };
 pub use asperity_files as files;
 pub use asperity_scans as scans;
@@ -71,6 +74,7 @@ pub mod cutoff;
 pub mod forecast;
 #[cfg(test)]
 mod layers;
+pub mod measurement;
 pub mod pipeline;
 pub mod plot;
 pub mod recipe;

@@ -65,6 +65,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<fem::FemSolveRow>()?,
         table::<multilevel::AverageRow>()?,
         table::<multilevel::PairRow>()?,
+        table::<tables::TotalRow>()?,
         table::<tables::FrictionRow>()?,
         table::<tables::BudgetRow>()?,
         table::<tables::MethodRow>()?,

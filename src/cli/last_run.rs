@@ -197,6 +197,11 @@ impl LastRun {
         }
     }
 
+    /// The recipe of the last run of a folder, as its text stood then; `None` if this version cannot read it.
+    pub(super) fn recipe_of(&self, out: &Path) -> Option<Recipe> {
+        Recipe::parse(self.text.as_ref()?, &self.recipe_for(out)).ok()
+    }
+
     /// Why results are not what the recipe asks for, by stage; stages without a result are left out.
     pub(super) fn doubts(&self, view: &RunView) -> BTreeMap<Stage, String> {
         let stages = Stage::ALL.into_iter();

@@ -5,6 +5,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `adhesion` | the shear stress of the contact area from measured friction |
 //! | `compare` | which of two runs has more friction |
 //! | `convert` | scans from one format to another |
 //! | `cutoff` | friction over the shortest wavelength |
@@ -33,6 +34,7 @@
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
 
+mod adhesion;
 mod compare;
 mod convert;
 mod cutoff;
@@ -102,6 +104,9 @@ enum Command {
     /// Make a rubber from measured moduli.
     #[command(subcommand)]
     Rubber(rubber::Rubber),
+    /// Find the shear stress of the contact area.
+    #[command(subcommand)]
+    Adhesion(adhesion::Adhesion),
     Synth(synth::Synth),
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
@@ -128,6 +133,7 @@ impl Arguments {
             Command::Cutoff(command) => command.run(self.quiet),
             Command::Solve(command) => command.run(self.quiet),
             Command::Rubber(command) => command.run(self.quiet),
+            Command::Adhesion(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),

@@ -29,7 +29,7 @@ use crate::stages::{
     multilevel::Multilevel,
     realise::{MOST_REALISATIONS, Realise},
     sinusoid::Sinusoid,
-    tables::Tables,
+    tables::{Adhesion, Tables},
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -85,6 +85,9 @@ pub struct Recipe {
     /// Averaged friction tables.
     #[serde(default)]
     pub tables: Tables,
+    /// Shear stress of the contact area; with it, the tables have the total friction beside the hysteresis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adhesion: Option<Adhesion>,
     /// The study of one sine wave under three models, in place of all other sections.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sinusoid: Option<Sinusoid>,
@@ -242,6 +245,7 @@ impl Recipe {
             ("fem", self.fem.is_some()),
             ("multilevel", self.multilevel.is_some()),
             ("tables", self.tables != Tables::default()),
+            ("adhesion", self.adhesion.is_some()),
             ("sweep", self.sweep.is_some()),
         ];
         match others.into_iter().find(|(_, present)| *present) {
@@ -267,6 +271,7 @@ impl Recipe {
             fem: self.fem.as_ref(),
             multilevel: self.multilevel.as_ref(),
             tables: &self.tables,
+            adhesion: self.adhesion.as_ref(),
         })
     }
 
@@ -325,6 +330,7 @@ impl Chain<'_> {
         self.fem.map_or(Ok(()), Fem::check)?;
         self.multilevel.map_or(Ok(()), Multilevel::check)?;
         self.tables.check()?;
+        self.adhesion.map_or(Ok(()), |adhesion| adhesion.check(self.bem.temperature_c))?;
         let limit = self.realise.most_realisations.unwrap_or(0);
         require(
             limit == 0 || self.bem.average_tolerance.is_some(),

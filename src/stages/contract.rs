@@ -12,7 +12,7 @@ use super::micro::Micro;
 use super::multilevel::Multilevel;
 use super::realise::Realise;
 use super::sinusoid::Sinusoid;
-use super::tables::Tables;
+use super::tables::{Adhesion, Tables};
 use super::{Stage, StageError, Watch};
 use crate::artifact::{
     ArtifactError, Input, Pending, ResultFile, RunView, SOLVES_FOLDER, SchemaVersion, SolveStore,
@@ -68,6 +68,8 @@ pub struct Chain<'a> {
     pub multilevel: Option<&'a Multilevel>,
     /// Section `[tables]`.
     pub tables: &'a Tables,
+    /// Section `[adhesion]`, if the contact area carries a shear stress.
+    pub adhesion: Option<&'a Adhesion>,
 }
 
 /// What a recipe asks for, with what it refers to: all that a stage may know besides the results before it.

@@ -75,6 +75,8 @@ pub(crate) struct FrictionAt {
     pub left_out_error: f64,
     /// Statistical error by the stretches of the microscale, absolute; `None` where it is not known.
     pub microscale_error: Option<f64>,
+    /// Estimated error by the grid of contact area over pressure, relative; `None` where it is not known.
+    pub relative_area_error: Option<f64>,
 }
 
 impl From<&CurveRow> for FrictionAt {
@@ -89,6 +91,7 @@ impl From<&CurveRow> for FrictionAt {
             discretisation_error: row.discretisation_error,
             left_out_error: row.left_out_error,
             microscale_error: Some(0.0),
+            relative_area_error: row.relative_area_error,
         }
     }
 }
@@ -101,6 +104,7 @@ impl From<&ArealCurveRow> for FrictionAt {
         Self {
             interpolation_error: row.interpolation_error,
             discretisation_error: row.discretisation_error,
+            relative_area_error: row.relative_area_error,
             ..Self::without_errors(curve, row.given, condition, row.friction_coefficient)
         }
     }
@@ -146,6 +150,7 @@ impl FrictionAt {
             discretisation_error: None,
             left_out_error: 0.0,
             microscale_error: Some(0.0),
+            relative_area_error: None,
         }
     }
 
@@ -154,7 +159,8 @@ impl FrictionAt {
         Condition::of(self.given, self.contact_area_fraction, self.pressure_mpa)
     }
 
-    /// The corrected value; `None` where the correction is not known.
+    /// The corrected value; `None` where the correction is not known. Area and pressure are those of the half-space, whose
+    /// error is not known here.
     pub fn corrected(row: &HybridRow) -> Option<Self> {
         let HybridRow { kind, realisation, speed_mm_s, .. } = *row;
         Some(Self {
@@ -167,6 +173,7 @@ impl FrictionAt {
             discretisation_error: row.discretisation_error,
             left_out_error: row.left_out_error,
             microscale_error: row.microscale_error,
+            relative_area_error: None,
         })
     }
 }

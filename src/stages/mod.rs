@@ -89,6 +89,9 @@ pub enum StageError {
     /// A file of the run folder.
     #[error(transparent)]
     Artifact(#[from] ArtifactError),
+    /// The shear stress of the contact area.
+    #[error("[adhesion]: {0}")]
+    Shear(#[from] crate::interface::ShearError),
     /// A scan file.
     #[error(transparent)]
     Scan(#[from] crate::scans::ScanError),
@@ -417,6 +420,7 @@ impl HasKind for StageError {
             // A table of an earlier stage that is not as it was written.
             Self::Metadata { .. } => ErrorKind::Input,
             Self::Artifact(source) => source.kind(),
+            Self::Shear(source) => source.kind(),
             Self::Scan(source) => source.kind(),
             Self::File(source) => source.kind(),
             Self::Conditioning(source) => source.kind(),

@@ -5,6 +5,7 @@ mod common;
 #[path = "../common/outcome.rs"]
 mod outcome;
 
+mod adhesion;
 mod campaign;
 mod files;
 mod inspect;

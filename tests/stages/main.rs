@@ -7,6 +7,7 @@ mod common;
 mod digests;
 
 mod added;
+mod adhesion;
 mod areal;
 mod bem;
 mod changes;

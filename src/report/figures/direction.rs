@@ -143,6 +143,7 @@ mod tests {
             friction_coefficient: friction,
             interpolation_error: 0.0,
             discretisation_error: None,
+            relative_area_error: None,
         }
     }
 

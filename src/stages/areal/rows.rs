@@ -108,11 +108,15 @@ pub struct ArealCurveRow {
     /// not known.
     #[schemars(extend("unit" = "1"))]
     pub discretisation_error: Option<f64>,
+    /// Estimated error by the grid of contact area over pressure, relative; absent where it is not known. Friction by a shear
+    /// stress of the contact area has it.
+    #[schemars(extend("unit" = "1"))]
+    pub relative_area_error: Option<f64>,
 }
 
 impl Row for ArealCurveRow {
     const SCHEMA: &'static str = "asperity.areal.curves";
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
 }
 
 /// Schemas of the results.

@@ -91,6 +91,7 @@ impl SolveTask for Task {
             friction_coefficient: value.friction_coefficient,
             interpolation_error: value.interpolation_error,
             discretisation_error: value.discretisation_error,
+            relative_area_error: value.relative_area_error,
         };
         let values = values.iter().map(row).collect();
         Ok(CurveResult { solves: curve.into_solves(), curve: values, fields })

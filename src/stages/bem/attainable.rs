@@ -121,6 +121,7 @@ mod tests {
             interpolation_error: 0.0,
             discretisation_error: Some(error),
             left_out_error: 0.0,
+            relative_area_error: None,
         };
         friction.map(|friction| vec![row(friction)]).to_vec()
     }

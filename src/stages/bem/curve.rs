@@ -312,6 +312,9 @@ pub(crate) fn solved(point: CurvePoint) -> CurveValue {
         friction_coefficient: point.friction_coefficient,
         interpolation_error: 0.0,
         discretisation_error: point.error.map(|error| error.friction_coefficient),
+        relative_area_error: point
+            .error
+            .map(|error| error.contact_area_fraction / point.contact_area_fraction),
     }
 }
 

@@ -101,11 +101,15 @@ pub struct CurveRow {
     /// where all are there.
     #[schemars(extend("unit" = "1"))]
     pub left_out_error: f64,
+    /// Estimated error by the grid of contact area over pressure, relative; absent where it is not known. Friction by a shear
+    /// stress of the contact area has it.
+    #[schemars(extend("unit" = "1"))]
+    pub relative_area_error: Option<f64>,
 }
 
 impl Row for CurveRow {
     const SCHEMA: &'static str = "asperity.bem.curves";
-    const VERSION: u32 = 4;
+    const VERSION: u32 = 5;
 }
 
 /// How many realisations were solved, and of which waves: `realisations.arrow`.

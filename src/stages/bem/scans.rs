@@ -235,6 +235,7 @@ mod tests {
                 interpolation_error: 0.0,
                 discretisation_error: None,
                 left_out_error: 0.0,
+                relative_area_error: None,
             }]
         };
         // Means of 0.9, 1.0 and 1.1, whatever the two realisations differ by.

@@ -75,6 +75,7 @@ impl SolveTask for Task {
             interpolation_error: value.interpolation_error,
             discretisation_error: value.discretisation_error,
             left_out_error: 0.0,
+            relative_area_error: value.relative_area_error,
         };
         let values = values.iter().map(row).collect();
         Ok(CurveResult { solves: curve.into_solves(), values, fields })

@@ -113,6 +113,7 @@ pub(super) mod tests {
             interpolation_error,
             discretisation_error: None,
             left_out_error: 0.0,
+            relative_area_error: None,
         }
     }
 

@@ -427,6 +427,7 @@ mod tests {
                 interpolation_error: 0.0,
                 discretisation_error: None,
                 left_out_error: 0.0,
+                relative_area_error: None,
             };
             HybridRow { load_beyond_full_contact, ..uncorrected(&curve) }
         };

@@ -71,6 +71,7 @@ mod tests {
             interpolation_error: 0.0,
             discretisation_error: None,
             left_out_error: 0.0,
+            relative_area_error: None,
         };
         HybridRow { friction_coefficient: friction, microscale_error: None, ..uncorrected(&curve) }
     }

@@ -76,7 +76,7 @@ fn of_realisations(tolerance: f64, rows: &[FrictionRow]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{average, tests::curve};
+    use super::super::average::{average, tests::curve};
     use super::*;
 
     #[test]

@@ -134,8 +134,8 @@ pub(super) fn sum_of_errors(row: &FrictionRow) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::average;
-    use super::super::tests::curve;
+    use super::super::average::average;
+    use super::super::average::tests::curve;
     use super::*;
     use crate::stages::realise::Method;
 

@@ -210,8 +210,8 @@ fn model_part(row: &FrictionRow, rows: &[FrictionRow]) -> Option<(Part, Option<f
 
 #[cfg(test)]
 mod tests {
-    use super::super::average;
-    use super::super::tests::curve;
+    use super::super::average::average;
+    use super::super::average::tests::curve;
     use super::*;
 
     #[test]

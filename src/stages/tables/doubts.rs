@@ -135,7 +135,7 @@ fn still_growing(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::curve;
+    use super::super::average::tests::curve;
     use super::super::{average, basis};
     use super::*;
     use crate::rubber::MaxwellBranch;

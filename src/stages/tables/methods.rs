@@ -130,8 +130,8 @@ fn of_pairs(values: &[f64], road: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::average;
-    use super::super::tests::curve;
+    use super::super::average::average;
+    use super::super::average::tests::curve;
     use super::*;
     use crate::stages::friction::FrictionAt;
 

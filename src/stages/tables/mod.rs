@@ -2,7 +2,9 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `adhesion` | the shear stress of the contact area: section `[adhesion]` |
 //! | `accuracy` | whether the averages have the accuracy that the recipe asks for |
+//! | `average` | values of friction of every model, and their averages over the realisations |
 //! | `basis` | what the averages rest on: windows, the shortest wavelength, and the errors by both |
 //! | `budget` | what the error of every average is made of |
 //! | `doubts` | what a reader of the averages should be told |
@@ -13,8 +15,11 @@
 //! | `published` | published tables beside the computed ones |
 //! | `rows` | the tables of the stage |
 //! | `theories` | what older theories predict at the areas of the half-space |
+//! | `total` | hysteresis and the shear of the contact area together |
 
 mod accuracy;
+mod adhesion;
+mod average;
 mod basis;
 mod budget;
 mod doubts;
@@ -25,24 +30,23 @@ mod multilevel;
 mod published;
 mod rows;
 mod theories;
+mod total;
 
 use super::approximate::WAVES;
-use super::areal::AREAL_CURVES;
-use super::bem::{CURVES, Given};
+use super::bem::CURVES;
 use super::characterise::{RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
-use super::fem;
-use super::friction::{Condition, FrictionAt};
-use super::hybrid::{self, Hybrid};
+use super::friction::FrictionAt;
+use super::hybrid::Hybrid;
 use super::realise::{AREAL_SURFACES, read_surfaces};
 use super::{Stage, StageError};
 use crate::artifact::RunView;
-use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use crate::scans::file::MapLines;
-use crate::stages::realise::SurfaceKind;
 use accuracy::missed;
+pub use adhesion::{Adhesion, Law};
+use average::{average, solved};
 use basis::Basis;
 use budget::budget;
 pub use budget::{BUDGET, BudgetRow, Part};
@@ -58,9 +62,10 @@ pub use rows::{FRICTION, FrictionRow, Model, schemas};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::collections::BTreeMap;
 use theories::predictions;
 pub use theories::{THEORIES, Theory, TheoryConstants, TheoryRow};
+use total::Shear;
+pub use total::{TOTAL, TotalRow};
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 10;
@@ -103,8 +108,13 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         }
     }
     parameters["rubber"] = json!(rubber);
+    let adhesion = chain.adhesion.map(|section| (section, chain.bem.temperature_c));
+    if let Some((section, temperature_c)) = adhesion {
+        parameters["adhesion"] = json!(section);
+        parameters["temperature_c"] = json!(temperature_c);
+    }
     let run = move |inputs: &Inputs, context: &mut Context| {
-        run(tables, models, rubber, &inputs.results, context)
+        run(tables, models, (rubber, adhesion), &inputs.results, context)
     };
     let planned = Planned::new(parameters, run)
         .reading(super::bem::CURVES)
@@ -215,7 +225,7 @@ pub struct Corrected {
 pub fn run(
     parameters: &Tables,
     models: Models,
-    rubber: &Rubber,
+    (rubber, adhesion): (&Rubber, Option<(&Adhesion, Option<f64>)>),
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
@@ -225,22 +235,9 @@ pub fn run(
     let areal = if models.angle_deg.is_some() { run.rows(AREAL_SURFACES)? } else { Vec::new() };
     let basis = Basis::read(run, &surfaces, &areal, models.scans)?;
     let bem: Vec<FrictionAt> = half_space.iter().map(FrictionAt::from).collect();
-    let mut rows = average(Model::Bem, bem.clone());
-    if let Some(angle_deg) = models.angle_deg {
-        let curves = run.rows(AREAL_CURVES)?;
-        let first = curves.iter().filter(|row| row.angle_deg == angle_deg);
-        rows.extend(average(Model::Bem, first.map(FrictionAt::from).collect()));
-    }
-    if models.hybrid.is_some() {
-        let hybrid = run.rows(hybrid::HYBRID)?;
-        let values = hybrid.iter().filter_map(FrictionAt::corrected).collect();
-        rows.extend(average(Model::Hybrid, complete(values, &bem)));
-    }
-    if models.fem {
-        let fem = run.rows(fem::FEM)?;
-        let values = fem.iter().map(FrictionAt::from).collect();
-        rows.extend(average(Model::Fem, complete(values, &bem)));
-    }
+    let mut values = solved(models, &bem, run)?;
+    let mut rows: Vec<FrictionRow> =
+        values.iter().flat_map(|(model, values)| average(*model, values.clone())).collect();
     if let Some(corrected) = models.hybrid {
         model_error::add(&mut rows, &fitted, &surfaces, corrected);
     }
@@ -252,7 +249,9 @@ pub fn run(
     if !theories.is_empty() {
         let predictions = predictions(theories, constants, rubber, &half_space, run)?;
         for of_one in predictions.chunk_by(|a, b| a.model == b.model) {
-            rows.extend(average(of_one[0].model, of_one.iter().map(FrictionAt::from).collect()));
+            let predicted: Vec<FrictionAt> = of_one.iter().map(FrictionAt::from).collect();
+            rows.extend(average(of_one[0].model, predicted.clone()));
+            values.push((of_one[0].model, predicted));
         }
         context.pending.write_rows(THEORIES, &predictions)?;
     }
@@ -265,6 +264,12 @@ pub fn run(
         .extend(parameters.tolerance.map_or_else(Vec::new, |tolerance| missed(tolerance, &rows)));
     context.pending.write_rows(FRICTION, &rows)?;
     context.pending.write_rows(BUDGET, &budget(&rows))?;
+    if let Some((section, temperature_c)) = adhesion {
+        let shear = Shear::new(section, temperature_c)?;
+        let totals = shear.totals(&values, &rows, &basis)?;
+        warnings.extend(shear.warnings(&totals));
+        context.pending.write_rows(TOTAL, &totals)?;
+    }
     let methods = methods::compared(&rows);
     warnings.extend(models.unlike_lines(&methods));
     if methods::differ(&methods) {
@@ -275,148 +280,4 @@ pub fn run(
     }
     published::write(parameters, &rows, &fitted, run, context)?;
     Ok(warnings)
-}
-
-/// The values at areas for which every realisation of the half-space has one: an average over some of
-/// them would be one over the less pressed ones.
-fn complete(values: Vec<FrictionAt>, half_space: &[FrictionAt]) -> Vec<FrictionAt> {
-    let counts = |values: &[FrictionAt]| {
-        let mut counts = BTreeMap::new();
-        values.iter().for_each(|value| *counts.entry(key(value)).or_insert(0) += 1);
-        counts
-    };
-    let (present, wanted): (BTreeMap<_, u32>, _) = (counts(&values), counts(half_space));
-    let full = |value: &FrictionAt| Some(&present[&key(value)]) == wanted.get(&key(value));
-    values.into_iter().filter(full).collect()
-}
-
-/// What the values of one average have in common.
-fn key(value: &FrictionAt) -> (SurfaceKind, u64, Condition) {
-    (value.curve.kind, value.curve.speed_mm_s.to_bits(), value.condition())
-}
-
-/// One row for each kind of surfaces, speed and area or pressure, ascending.
-fn average(model: Model, mut curves: Vec<FrictionAt>) -> Vec<FrictionRow> {
-    let order = |a: &FrictionAt, b: &FrictionAt| {
-        a.curve
-            .kind
-            .cmp(&b.curve.kind)
-            .then(a.curve.speed_mm_s.total_cmp(&b.curve.speed_mm_s))
-            .then(a.condition().cmp(&b.condition()))
-    };
-    curves.sort_by(|a, b| order(a, b).then(a.curve.realisation.cmp(&b.curve.realisation)));
-    curves.chunk_by(|a, b| order(a, b).is_eq()).map(|values| row(model, values)).collect()
-}
-
-/// An average without what it rests on, see [`Basis::complete`].
-fn row(model: Model, curves: &[FrictionAt]) -> FrictionRow {
-    let realisations: Vec<f64> = curves.iter().map(|c| c.friction_coefficient).collect();
-    let estimate = MeanEstimate::of(&realisations);
-    let present = |value: f64| value.is_finite().then_some(value);
-    let first = &curves[0];
-    let count = curves.len() as f64;
-    let mean = |error: fn(&FrictionAt) -> f64| curves.iter().map(error).sum::<f64>() / count;
-    let discretisation_error = curves
-        .iter()
-        .map(|curve| curve.discretisation_error)
-        .try_fold(0.0, |sum, error| Some(sum + error? / count));
-    let interpolation_error = mean(|curve| curve.interpolation_error);
-    let left_out_error = mean(|curve| curve.left_out_error);
-    let statistical_error = present(estimate.confidence_95);
-    let microscale_error = curves
-        .iter()
-        .map(|curve| curve.microscale_error)
-        .try_fold(0.0, |sum, error| Some(sum + error? / count));
-    FrictionRow {
-        model,
-        kind: first.curve.kind,
-        speed_mm_s: first.curve.speed_mm_s,
-        given: first.given,
-        contact_area_fraction: match first.given {
-            Given::Area => first.contact_area_fraction,
-            Given::Pressure => mean(|curve| curve.contact_area_fraction),
-        },
-        shortest_wavelength_mm: 0.0,
-        windows: 0,
-        realisations,
-        half_space_realisations: None,
-        mean: estimate.mean,
-        standard_deviation: present(estimate.standard_deviation),
-        confidence_95: statistical_error,
-        scan_error: None,
-        interpolation_error,
-        discretisation_error,
-        left_out_error,
-        microscale_error: microscale_error.filter(|_| model == Model::Hybrid),
-        model_error: None,
-        error_estimate: None,
-        pressure_mpa: match first.given {
-            Given::Area => mean(|curve| curve.pressure_mpa),
-            Given::Pressure => first.pressure_mpa,
-        },
-        shortest_reliable_wavelength_mm: None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::friction::CurveId;
-    use super::*;
-
-    pub(super) fn curve(waves: u32, realisation: u32, area: f64, friction: f64) -> FrictionAt {
-        FrictionAt {
-            curve: CurveId { kind: SurfaceKind::sines(waves), realisation, speed_mm_s: 10.0 },
-            given: Given::Area,
-            contact_area_fraction: area,
-            pressure_mpa: friction,
-            friction_coefficient: friction,
-            interpolation_error: friction / 1e3,
-            discretisation_error: (realisation < 9).then_some(friction / 2e3),
-            left_out_error: 0.0,
-            microscale_error: Some(0.0),
-        }
-    }
-
-    #[test]
-    fn an_average_needs_every_realisation() {
-        let values = vec![curve(8, 1, 0.05, 1.0), curve(8, 2, 0.05, 2.0), curve(8, 1, 0.1, 1.0)];
-        let half_space = [values.clone(), vec![curve(8, 2, 0.1, 1.0)]].concat();
-        let complete = complete(values, &half_space);
-        assert_eq!(complete.len(), 2);
-        assert!(complete.iter().all(|value| value.contact_area_fraction == 0.05));
-    }
-
-    #[test]
-    fn rows_are_averaged_over_realisations_whatever_their_order() {
-        let mut rows = average(
-            Model::Bem,
-            vec![
-                curve(9, 1, 0.1, 7.0),
-                curve(8, 2, 0.1, 3.0),
-                curve(8, 1, 0.05, 1.5),
-                curve(8, 1, 0.1, 1.0),
-                curve(8, 2, 0.05, 2.5),
-            ],
-        );
-        assert_eq!(rows.len(), 3);
-        assert_eq!(rows[0].realisations, [1.5, 2.5]);
-        assert_eq!((rows[1].mean, rows[1].interpolation_error), (2.0, 2e-3));
-        // t(0.975, 1) = 12.7062 in every table.
-        let expected = 12.7062 * 2.0_f64.sqrt() / 2.0_f64.sqrt();
-        approx::assert_relative_eq!(rows[1].confidence_95.unwrap(), expected, max_relative = 1e-5);
-        // Means of grid 1e-3 and of interpolation 2e-3, statistics.
-        for row in &mut rows {
-            row.scan_error = Some(0.0);
-            row.error_estimate = basis::sum_of_errors(row);
-        }
-        approx::assert_relative_eq!(
-            rows[1].error_estimate.unwrap(),
-            3e-3 + rows[1].confidence_95.unwrap(),
-            max_relative = 1e-12
-        );
-        assert_eq!((rows[2].kind.waves, rows[2].confidence_95), (9, None));
-        assert_eq!((rows[2].discretisation_error, rows[2].error_estimate), (Some(3.5e-3), None));
-        let unknown = row(Model::Bem, &[curve(8, 1, 0.1, 1.0), curve(8, 9, 0.1, 1.1)]);
-        assert_eq!((unknown.discretisation_error, unknown.error_estimate), (None, None));
-    }
 }

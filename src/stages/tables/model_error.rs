@@ -76,8 +76,8 @@ fn share(steepest: f64, corrected: Corrected) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::average;
-    use super::super::tests::curve;
+    use super::super::average::average;
+    use super::super::average::tests::curve;
     use super::*;
     use crate::multiscale::correction::MeanRule;
 

@@ -120,8 +120,8 @@ fn apart(rows: &[FrictionRow], model: Model, reference: Model) -> Vec<ModelRow> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::average;
-    use super::super::tests::curve;
+    use super::super::average::average;
+    use super::super::average::tests::curve;
     use super::*;
 
     #[test]

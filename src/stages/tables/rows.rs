@@ -1,6 +1,6 @@
 //! The tables of the stage.
 
-use super::{BUDGET, COMPARISON, CORRECTIONS, METHODS, MODELS, THEORIES};
+use super::{BUDGET, COMPARISON, CORRECTIONS, METHODS, MODELS, THEORIES, TOTAL};
 use crate::artifact::{Row, SchemaVersion, Table};
 use crate::stages::bem::Given;
 use crate::stages::friction::Condition;
@@ -152,5 +152,6 @@ pub fn schemas() -> Vec<SchemaVersion> {
         METHODS.schema(),
         MODELS.schema(),
         THEORIES.schema(),
+        TOTAL.schema(),
     ]
 }

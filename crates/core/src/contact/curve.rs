@@ -31,6 +31,9 @@ pub struct CurveValue {
     /// The larger of the errors by the grid of the two points that it lies between, including the change of friction by
     /// the error of the area; `None` if one of them is not known.
     pub discretisation_error: Option<f64>,
+    /// Estimated error by the grid of contact area over pressure, relative: of the area where the pressure is that of a
+    /// solve, of the pressure where it is interpolated for the area; `None` if that of one of the points is not known.
+    pub relative_area_error: Option<f64>,
 }
 
 /// Why a curve could not be found.
@@ -235,6 +238,15 @@ where
                     error.friction_coefficient + slope * area
                 })
             };
+            // An area that is off by a share is had at a pressure that is off by that share over the local exponent.
+            let exponent =
+                (width / (above.mean_pressure / below.mean_pressure).ln()).clamp(0.3, 1.5);
+            let exponent = if exponent.is_nan() { 1.0 } else { exponent };
+            let of_area = |point: &CurvePoint| {
+                point.error.map(|error| {
+                    error.contact_area_fraction / point.contact_area_fraction / exponent
+                })
+            };
             CurveValue {
                 contact_area_fraction: *target,
                 mean_pressure: pressure.at(at).exp(),
@@ -242,6 +254,9 @@ where
                 interpolation_error,
                 discretisation_error: error(below)
                     .zip(error(above))
+                    .map(|(below, above)| below.max(above)),
+                relative_area_error: of_area(below)
+                    .zip(of_area(above))
                     .map(|(below, above)| below.max(above)),
             }
         };

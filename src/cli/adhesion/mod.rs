@@ -1,0 +1,289 @@
+//! `asperity adhesion`: the shear stress of the contact area from measured friction.
+
+mod summary;
+
+use super::last_run::LastRun;
+use super::output::{json, note, print, refuse_existing, write_file};
+use super::{CliError, run_folder, values};
+use asperity::interface::{FittedShear, Fixed, MeasuredFriction, fit_shear};
+use asperity::measurement::{Choice, Computed, MeasuredFile, read_measured};
+use asperity::recipe::Recipe;
+use asperity::rubber::{TemperatureDependence, read_rubber_data};
+use asperity::stages::realise::{Method, SurfaceKind};
+use asperity::stages::tables::Model;
+use asperity::units::Units;
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+use summary::{Summary, section};
+
+const EXAMPLES: &str = "\
+Examples:
+  The shear stress that explains measured friction, from a run at the pressure of the measurement:
+    asperity adhesion fit measured.csv --run runs/road --to adhesion.toml
+  With a known activation energy and width, of a run with several kinds of surfaces:
+    asperity adhesion fit measured.csv --run runs/road --method measured --activation-ev 0.97 --reference-c 20 --width 0.1
+  The file has a header such as speed_mm_s, friction and, optionally, temperature_c and pressure_mpa.
+
+Exit codes: 0 fitted, 1 the measurements determine no law, 2 bad input.";
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Adhesion {
+    Fit(Fit),
+}
+
+/// Fit the shear stress of the contact area to measured friction.
+///
+/// The run gives hysteretic friction and contact area over the speed at the pressure of the measurement; the rest of the measured friction
+/// is put down to a shear stress tau_f of the contact area: tau_f = shear exp(-width log10(v a / speed)^2), with
+/// a = exp(activation/k (1/T - 1/T_0)). The shear stress belongs to the shortest wavelength of the run, since the contact area does.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Fit {
+    /// Measured friction: a table with a header.
+    #[arg(value_name = "MEASURED.CSV")]
+    measured: PathBuf,
+    /// Run folder with friction at the pressure of the measurement (bem.pressures_mpa).
+    #[arg(long, value_name = "RUN")]
+    run: PathBuf,
+    /// Contact model of the hysteresis [default: bem].
+    #[arg(long, value_enum, value_name = "MODEL")]
+    model: Option<Model>,
+    /// Kind of surfaces, if the run has several.
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<Method>,
+    /// Number of waves of the sines, beside --method sines.
+    #[arg(long, value_name = "N", value_parser = values::count::<u32>, allow_negative_numbers = true)]
+    waves: Option<u32>,
+    /// Pressure in MPa, if the run has several.
+    #[arg(long, value_name = "MPA", value_parser = values::positive, allow_negative_numbers = true)]
+    pressure: Option<f64>,
+    /// Temperature in °C of measurements whose file has none [default: that of the run].
+    #[arg(long, value_name = "C", value_parser = values::finite, allow_negative_numbers = true)]
+    temperature_c: Option<f64>,
+    /// Fix the speed in mm/s of the largest shear stress.
+    #[arg(long, value_name = "MM_S", value_parser = values::positive, allow_negative_numbers = true)]
+    speed: Option<f64>,
+    /// Fix the width.
+    #[arg(long, value_name = "C", value_parser = values::positive, allow_negative_numbers = true)]
+    width: Option<f64>,
+    /// Fix the activation energy in eV.
+    #[arg(long, value_name = "EV", value_parser = values::finite, allow_negative_numbers = true)]
+    activation_ev: Option<f64>,
+    /// Temperature in °C of the law [default: that of the run, if measurements differ in temperature].
+    #[arg(long, value_name = "C", value_parser = values::finite, allow_negative_numbers = true)]
+    reference_c: Option<f64>,
+    /// Write the section [adhesion] of a recipe to this file.
+    #[arg(long, value_name = "FILE.TOML")]
+    to: Option<PathBuf>,
+    /// Overwrite a file that is there already.
+    #[arg(long)]
+    force: bool,
+    /// Print JSON with full precision instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Adhesion {
+    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+        match self {
+            Self::Fit(fit) => fit.run(quiet),
+        }
+    }
+}
+
+/// The temperatures of a run and of what was measured.
+struct Temperatures {
+    /// That of the run in °C.
+    run_c: Option<f64>,
+    /// Those of the measurements in °C.
+    measured_c: Vec<f64>,
+    /// How the rubber of the run shifts, where temperatures differ.
+    rubber: Option<TemperatureDependence>,
+}
+
+impl Fit {
+    fn run(&self, quiet: bool) -> Result<(), CliError> {
+        refuse_existing(self.to.as_deref(), self.force)?;
+        let file = read_measured(&self.measured)?;
+        let view = run_folder::view_of_case(&self.run)?;
+        let last_run = LastRun::read(&self.run, quiet);
+        if let Some(doubt) = last_run.as_ref().and_then(|last| last.doubt(&self.run, "tables")) {
+            note(quiet, format_args!("warning: {doubt}"));
+        }
+        let computed = Computed::read(&view, self.choice()?)?;
+        self.check_pressures(&file, &computed)?;
+        let recipe = last_run.and_then(|last| last.recipe_of(&self.run));
+        let temperatures = self.temperatures(&file, recipe.as_ref())?;
+        let measured = beside(&file, &computed, &temperatures).map_err(|(line, error)| {
+            CliError::input(format!("{}, line {line}: {error}", self.measured.display()))
+        })?;
+        let reference_c = self.reference(&temperatures)?;
+        let fixed = Fixed {
+            peak_speed: self.speed.map(Units::mm_to_m),
+            width: self.width,
+            energy_ev: self.activation_ev,
+        };
+        let fit = fit_shear(&measured, reference_c, fixed)?;
+        for warning in warnings(&fit, &measured) {
+            note(quiet, format_args!("warning: {warning}"));
+        }
+        let text = section(&fit, &computed, &self.measured);
+        if let Some(path) = &self.to {
+            write_file(path, self.force, |out| out.write_all(text.as_bytes()))?;
+        }
+        let summary = Summary::new(&fit, &computed, &measured);
+        print(&if self.json { json(&summary)? } else { summary.table() })
+    }
+
+    fn choice(&self) -> Result<Choice, CliError> {
+        let kind = match (self.method, self.waves) {
+            (Some(Method::Sines) | None, Some(waves)) => Some(SurfaceKind::sines(waves)),
+            (Some(Method::Sines), None) => {
+                return Err(CliError::input("--method sines needs --waves, the number of waves"));
+            }
+            (Some(method), None) => Some(SurfaceKind::of(method)),
+            (Some(method), Some(_)) => {
+                let name = method.name();
+                return Err(CliError::input(format!(
+                    "--waves is for --method sines: leave it out beside {name}"
+                )));
+            }
+            (None, None) => None,
+        };
+        Ok(Choice { model: self.model, kind, pressure_mpa: self.pressure })
+    }
+
+    /// Measurements at another pressure than that of the run have another friction.
+    fn check_pressures(&self, file: &MeasuredFile, computed: &Computed) -> Result<(), CliError> {
+        let run = computed.pressure_mpa;
+        let other = |pressure: f64| (pressure / run - 1.0).abs() > 0.01;
+        for (point, line) in file.points.iter().zip(&file.lines) {
+            if let Some(pressure) = point.pressure_mpa.filter(|pressure| other(*pressure)) {
+                let path = self.measured.display();
+                return Err(CliError::input(format!(
+                    "{path}, line {line}: the pressure is {pressure} MPa, that of the run {run} MPa: fit measurements of one pressure, \
+                     with a run at it (bem.pressures_mpa)"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    fn temperatures(
+        &self,
+        file: &MeasuredFile,
+        recipe: Option<&Recipe>,
+    ) -> Result<Temperatures, CliError> {
+        let bem = recipe.and_then(|recipe| recipe.bem.as_ref());
+        let run_c = bem.and_then(|bem| bem.temperature_c);
+        let own = |point: &asperity::measurement::MeasuredPoint| {
+            point.temperature_c.or(self.temperature_c).or(run_c)
+        };
+        let known: Vec<Option<f64>> = file.points.iter().map(own).collect();
+        let Some(first) = known.iter().flatten().next().copied() else {
+            // No temperature anywhere: all at that of the rubber as it stands.
+            return Ok(Temperatures { run_c, measured_c: vec![20.0; known.len()], rubber: None });
+        };
+        let Some(run_c) = run_c else {
+            return Err(CliError::input(format!(
+                "a measurement is at {first} °C and the run states no temperature: set bem.temperature_c in its recipe, and run it again"
+            )));
+        };
+        let measured_c: Vec<f64> = known.into_iter().map(|c| c.unwrap_or(run_c)).collect();
+        let rubber = if measured_c.iter().all(|c| *c == run_c) {
+            None
+        } else {
+            let path = bem
+                .map(|bem| &bem.rubber)
+                .ok_or_else(|| CliError::input("the recipe of the run names no rubber"))?;
+            let law = read_rubber_data(path)?.temperature.ok_or_else(|| {
+                let path = path.display();
+                CliError::input(format!(
+                    "measurements are not at the {run_c} °C of the run, and {path} has no [temperature] section to shift its friction by"
+                ))
+            })?;
+            if law.vertical.is_some() {
+                return Err(CliError::input(format!(
+                    "measurements are not at the {run_c} °C of the run, and the moduli of its rubber change with temperature beside their shift: \
+                     make a run at each temperature"
+                )));
+            }
+            Some(law)
+        };
+        Ok(Temperatures { run_c: Some(run_c), measured_c, rubber })
+    }
+
+    /// T_0 of the law, if it shifts with temperature.
+    fn reference(&self, temperatures: &Temperatures) -> Result<Option<f64>, CliError> {
+        let one = temperatures.measured_c.windows(2).all(|pair| pair[0] == pair[1]);
+        let shifts = !one || self.activation_ev.is_some();
+        match (self.reference_c, temperatures.run_c) {
+            (Some(_), _) if !shifts => Err(CliError::input(
+                "--reference-c has no effect on measurements at one temperature: leave it out, or give --activation-ev",
+            )),
+            (Some(reference_c), _) => Ok(Some(reference_c)),
+            (None, Some(run_c)) if shifts => Ok(Some(run_c)),
+            (None, None) if shifts => Err(CliError::input(
+                "--activation-ev needs --reference-c: neither run nor file states a temperature",
+            )),
+            _ => Ok(None),
+        }
+    }
+}
+
+/// What the run has beside every measurement; an error with the line.
+fn beside(
+    file: &MeasuredFile,
+    computed: &Computed,
+    temperatures: &Temperatures,
+) -> Result<Vec<MeasuredFriction>, (usize, String)> {
+    let mut measured = Vec::new();
+    let points = file.points.iter().zip(&file.lines).zip(&temperatures.measured_c);
+    for ((point, line), temperature_c) in points {
+        let failed = |error: String| (*line, error);
+        // Another temperature is another speed where the moduli only shift.
+        let factor = match (&temperatures.rubber, temperatures.run_c) {
+            (Some(law), Some(run_c)) => {
+                let of = |c: f64| law.shift_factor(c).map_err(|error| failed(error.to_string()));
+                of(*temperature_c)? / of(run_c)?
+            }
+            _ => 1.0,
+        };
+        let at = computed
+            .at(point.speed_mm_s * factor, factor != 1.0)
+            .map_err(|error| failed(error.to_string()))?;
+        measured.push(MeasuredFriction {
+            speed: point.speed_mm_s.mm_to_m(),
+            temperature_c: *temperature_c,
+            pressure: computed.pressure_mpa.mpa_to_pa(),
+            friction: point.friction,
+            hysteretic: at.hysteretic,
+            contact_area_fraction: at.contact_area_fraction,
+        });
+    }
+    Ok(measured)
+}
+
+/// What a reader of the law should know.
+fn warnings(fit: &FittedShear, measured: &[MeasuredFriction]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let below = measured.iter().filter(|m| m.friction < m.hysteretic).count();
+    if below > 0 {
+        warnings.push(format!(
+            "{below} of {} measurements have less friction than the computed hysteresis: no shear stress explains them",
+            measured.len()
+        ));
+    }
+    let wide = |[low, high]: [f64; 2]| high > 10.0 * low;
+    let open = [
+        ("speed", fit.peak_speed.ends),
+        ("shear stress", fit.peak_stress.ends),
+        ("width", fit.width.ends),
+    ];
+    for (name, _) in open.into_iter().filter(|(_, ends)| ends.is_some_and(wide)) {
+        warnings.push(format!(
+            "the {name} of the law is known within more than a factor of ten only: it does not hold outside the measured speeds"
+        ));
+    }
+    warnings
+}

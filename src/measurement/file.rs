@@ -1,0 +1,217 @@
+//! Measured friction over speed as a table of text.
+
+use crate::error_kind::{ErrorKind, HasKind};
+use crate::files;
+use std::path::{Path, PathBuf};
+
+/// One measurement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPoint {
+    /// Sliding speed in mm/s.
+    pub speed_mm_s: f64,
+    /// Measured friction coefficient.
+    pub friction: f64,
+    /// Temperature in °C, if the file has it.
+    pub temperature_c: Option<f64>,
+    /// Mean pressure in MPa, if the file has it.
+    pub pressure_mpa: Option<f64>,
+}
+
+/// Measured friction as it was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredFile {
+    /// The measurements, in the order of the file.
+    pub points: Vec<MeasuredPoint>,
+    /// Line of each, the first is 1.
+    pub lines: Vec<usize>,
+}
+
+/// Why a file holds no measured friction.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasuredFileError {
+    /// It cannot be read.
+    #[error("cannot read the measured friction {}: {source}{}", .path.display(), files::advice(.source))]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system answered.
+        source: std::io::Error,
+    },
+    /// The complete text, or one line of it.
+    #[error("{}{}: {problem}", .path.display(), .line.map_or(String::new(), |line| format!(", line {line}")))]
+    Problem {
+        /// The file.
+        path: PathBuf,
+        /// Its line; the first is 1.
+        line: Option<usize>,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+}
+
+impl HasKind for MeasuredFileError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Unreadable { .. } | Self::Problem { .. } => ErrorKind::Input,
+        }
+    }
+}
+
+/// A quantity that a column may hold, by the name in the header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    SpeedMm,
+    SpeedM,
+    LogSpeedM,
+    Friction,
+    Temperature,
+    Pressure,
+}
+
+const NAMES: [(&str, Quantity); 6] = [
+    ("speed_mm_s", Quantity::SpeedMm),
+    ("speed_m_s", Quantity::SpeedM),
+    ("log10_speed_m_s", Quantity::LogSpeedM),
+    ("friction", Quantity::Friction),
+    ("temperature_c", Quantity::Temperature),
+    ("pressure_mpa", Quantity::Pressure),
+];
+
+const HEADER: &str = "the columns must have names: speed_mm_s, speed_m_s or log10_speed_m_s, and friction; \
+     optional are temperature_c and pressure_mpa";
+
+/// Reads measured friction: text with a header, columns separated by commas, semicolons, tabs or blanks; lines that begin with `#` are
+/// comments. Columns with other names are not read.
+///
+/// # Errors
+/// [`MeasuredFileError`] with the line and the value as typed.
+pub fn read_measured(path: &Path) -> Result<MeasuredFile, MeasuredFileError> {
+    let unreadable = |source| MeasuredFileError::Unreadable { path: path.to_path_buf(), source };
+    let problem = |line, problem: String| MeasuredFileError::Problem {
+        path: path.to_path_buf(),
+        line,
+        problem,
+    };
+    let text = files::read_settings(path).map_err(unreadable)?;
+    parse(&text).map_err(|(line, text)| problem(line, text))
+}
+
+fn parse(text: &str) -> Result<MeasuredFile, (Option<usize>, String)> {
+    let mut rows = (1..)
+        .zip(text.lines())
+        .map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')))
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (number, header) = rows.next().ok_or((None, format!("the file is empty; {HEADER}")))?;
+    let separator = [';', '\t', ','].into_iter().find(|mark| header.contains(*mark));
+    let cells = |line: &str| -> Vec<String> {
+        match separator {
+            Some(mark) => line.split(mark).map(|cell| cell.trim().to_owned()).collect(),
+            None => line.split_whitespace().map(str::to_owned).collect(),
+        }
+    };
+    let columns = columns(&cells(header)).map_err(|text| (Some(number), text))?;
+    let mut file = MeasuredFile { points: Vec::new(), lines: Vec::new() };
+    for (number, line) in rows {
+        let point = point(&columns, &cells(line)).map_err(|text| (Some(number), text))?;
+        file.points.push(point);
+        file.lines.push(number);
+    }
+    if file.points.is_empty() {
+        return Err((None, "there is a header and no measurement below it".into()));
+    }
+    Ok(file)
+}
+
+/// The quantity of every column.
+fn columns(header: &[String]) -> Result<Vec<Option<Quantity>>, String> {
+    let quantity = |name: &String| {
+        let found = NAMES.iter().find(|(known, _)| name.eq_ignore_ascii_case(known));
+        found.map(|(_, quantity)| *quantity)
+    };
+    let columns: Vec<Option<Quantity>> = header.iter().map(quantity).collect();
+    let has = |of: &[Quantity]| columns.iter().flatten().filter(|q| of.contains(q)).count();
+    let speeds = has(&[Quantity::SpeedMm, Quantity::SpeedM, Quantity::LogSpeedM]);
+    for (count, what) in [(speeds, "speed"), (has(&[Quantity::Friction]), "friction")] {
+        if count != 1 {
+            let found = header.join(", ");
+            return Err(format!(
+                "{count} columns of the {what} among `{found}`, one is needed; {HEADER}"
+            ));
+        }
+    }
+    for (quantity, name) in
+        [(Quantity::Temperature, "temperature_c"), (Quantity::Pressure, "pressure_mpa")]
+    {
+        if has(&[quantity]) > 1 {
+            return Err(format!("{name} stands twice"));
+        }
+    }
+    Ok(columns)
+}
+
+fn point(columns: &[Option<Quantity>], cells: &[String]) -> Result<MeasuredPoint, String> {
+    if cells.len() != columns.len() {
+        return Err(format!("{} cells where the header has {}", cells.len(), columns.len()));
+    }
+    let mut point = MeasuredPoint {
+        speed_mm_s: f64::NAN,
+        friction: f64::NAN,
+        temperature_c: None,
+        pressure_mpa: None,
+    };
+    for (column, cell) in columns.iter().zip(cells) {
+        let Some(quantity) = column else { continue };
+        let value: f64 = cell.parse().map_err(|_| format!("`{cell}` is not a number"))?;
+        if !value.is_finite() {
+            return Err(format!("`{cell}` is not a finite number: leave the line out"));
+        }
+        match quantity {
+            Quantity::SpeedMm => point.speed_mm_s = value,
+            Quantity::SpeedM => point.speed_mm_s = 1e3 * value,
+            Quantity::LogSpeedM => point.speed_mm_s = 10.0_f64.powf(3.0 + value),
+            Quantity::Friction => point.friction = value,
+            Quantity::Temperature => point.temperature_c = Some(value),
+            Quantity::Pressure => point.pressure_mpa = Some(value),
+        }
+    }
+    if !(point.speed_mm_s > 0.0 && point.speed_mm_s.is_finite()) {
+        return Err(format!("the speed {} mm/s is not positive", point.speed_mm_s));
+    }
+    if point.pressure_mpa.is_some_and(|pressure| pressure <= 0.0) {
+        return Err("the pressure is not positive".into());
+    }
+    Ok(point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_found_by_their_names() {
+        let text = "# tester 7\nspeed_m_s; friction; note; temperature_c\n1e-3; 1.2; a; 20\n0.5; 1.4; b; 21.5\n";
+        let file = parse(text).unwrap();
+        assert_eq!((file.points.len(), &file.lines[..]), (2, &[3, 4][..]));
+        let last = file.points[1];
+        assert_eq!((last.speed_mm_s, last.friction), (500.0, 1.4));
+        assert_eq!((last.temperature_c, last.pressure_mpa), (Some(21.5), None));
+        let blanks = parse("log10_speed_m_s  friction\n-3 0.7\n").unwrap();
+        approx::assert_relative_eq!(blanks.points[0].speed_mm_s, 1.0, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_line() {
+        let error = |text: &str| parse(text).unwrap_err();
+        assert!(error("").1.contains("empty"));
+        assert!(error("speed,friction\n1,2\n").1.contains("0 columns of the speed"));
+        assert_eq!(
+            error("speed_mm_s,friction\n1,2\n1,x\n"),
+            (Some(3), "`x` is not a number".into())
+        );
+        assert!(error("speed_mm_s,friction\n1,nan\n").1.contains("`nan` is not a finite"));
+        assert!(error("speed_mm_s,friction\n1\n").1.contains("1 cells"));
+        assert!(error("speed_mm_s,friction\n-1,2\n").1.contains("not positive"));
+        assert!(error("speed_mm_s,friction\n").1.contains("no measurement"));
+        assert!(error("speed_mm_s,speed_m_s,friction\n").1.contains("2 columns of the speed"));
+    }
+}

@@ -1,0 +1,226 @@
+//! Hysteretic friction and contact area of a run, over the speed at one pressure.
+
+use crate::artifact::{ArtifactError, RunView};
+use crate::error_kind::{ErrorKind, HasKind};
+use crate::numerics::interpolation::CubicHermite;
+use crate::stages::bem::Given;
+use crate::stages::realise::SurfaceKind;
+use crate::stages::tables::{FRICTION, FrictionRow, Model};
+
+/// Pressures that differ by less, relative, are the same: tables state them with all digits, people with two.
+const SAME_PRESSURE: f64 = 1e-3;
+
+/// Which rows of a run are meant, where it has several.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Choice {
+    /// Contact model; the half-space if `None`.
+    pub model: Option<Model>,
+    /// Kind of surfaces; needed where the run has several.
+    pub kind: Option<SurfaceKind>,
+    /// Mean pressure in MPa; needed where the run has several.
+    pub pressure_mpa: Option<f64>,
+}
+
+/// Friction and area of a run over the speed.
+#[derive(Debug, Clone)]
+pub struct Computed {
+    /// Contact model.
+    pub model: Model,
+    /// Kind of surfaces.
+    pub kind: SurfaceKind,
+    /// Mean pressure in MPa.
+    pub pressure_mpa: f64,
+    /// Shortest wavelength of the surfaces in mm.
+    pub shortest_wavelength_mm: f64,
+    /// Lowest and highest speed in mm/s.
+    pub speeds_mm_s: [f64; 2],
+    friction: CubicHermite,
+    ln_area: CubicHermite,
+    error: CubicHermite,
+    /// Whether every row has an estimated error.
+    errors_known: bool,
+}
+
+/// What a run has at one speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ComputedAt {
+    /// Hysteretic friction coefficient.
+    pub hysteretic: f64,
+    /// Contact area fraction.
+    pub contact_area_fraction: f64,
+    /// Estimated error of the hysteretic friction; `None` if that of one row is not known.
+    pub error: Option<f64>,
+}
+
+/// Why a run has nothing to compare with.
+#[derive(Debug, thiserror::Error)]
+pub enum ComputedError {
+    /// The run folder.
+    #[error(transparent)]
+    Artifact(#[from] ArtifactError),
+    /// No row at a given pressure.
+    #[error(
+        "the run has no friction at a given pressure: set bem.pressures_mpa in its recipe to the pressure of the measurement, and run it again"
+    )]
+    NoPressure,
+    /// Rows of several kinds.
+    #[error("the run has several {what}: {found}; choose one with {option}")]
+    Several {
+        /// What there are several of.
+        what: &'static str,
+        /// Their names.
+        found: String,
+        /// The option that chooses.
+        option: &'static str,
+    },
+    /// None of the kind asked for.
+    #[error("the run has no {what} {asked}; it has {found}")]
+    Missing {
+        /// What is missing.
+        what: &'static str,
+        /// What was asked for.
+        asked: String,
+        /// What there is.
+        found: String,
+    },
+    /// Fewer than two speeds.
+    #[error(
+        "the run has {count} speed(s), two are needed to interpolate: set bem.speeds_mm_s to cover the measured speeds"
+    )]
+    TooFewSpeeds {
+        /// How many.
+        count: usize,
+    },
+    /// A speed that the run does not cover.
+    #[error(
+        "the run covers {} to {} mm/s and has no friction at {speed_mm_s} mm/s{}: add speeds to bem.speeds_mm_s, and run it again",
+        .range[0],
+        .range[1],
+        if *.shifted { " (the measured speed, shifted with the temperature)" } else { "" }
+    )]
+    OutsideSpeeds {
+        /// The speed in mm/s.
+        speed_mm_s: f64,
+        /// Those of the run in mm/s.
+        range: [f64; 2],
+        /// Whether it was shifted with the temperature.
+        shifted: bool,
+    },
+}
+
+impl HasKind for ComputedError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Artifact(error) => error.kind(),
+            Self::NoPressure
+            | Self::Several { .. }
+            | Self::Missing { .. }
+            | Self::TooFewSpeeds { .. }
+            | Self::OutsideSpeeds { .. } => ErrorKind::Input,
+        }
+    }
+}
+
+impl Computed {
+    /// Reads the averages of a run.
+    ///
+    /// # Errors
+    /// [`ComputedError`], which names the options that choose between several.
+    pub fn read(run: &RunView, choice: Choice) -> Result<Self, ComputedError> {
+        let rows: Vec<FrictionRow> =
+            run.rows(FRICTION)?.into_iter().filter(|row| row.given == Given::Pressure).collect();
+        if rows.is_empty() {
+            return Err(ComputedError::NoPressure);
+        }
+        let model = choice.model.unwrap_or(Model::Bem);
+        let rows = of(rows, "model", "--model", Some(model), |row| row.model, |a, b| a == b)?;
+        let rows = of(
+            rows,
+            "kinds of surfaces",
+            "--method and --waves",
+            choice.kind,
+            |row| row.kind,
+            |a, b| a == b,
+        )?;
+        let same = |a: &f64, b: &f64| (a / b - 1.0).abs() < SAME_PRESSURE;
+        let mut rows = of(
+            rows,
+            "pressures in MPa",
+            "--pressure",
+            choice.pressure_mpa,
+            |row| row.pressure_mpa,
+            same,
+        )?;
+        rows.sort_by(|a, b| a.speed_mm_s.total_cmp(&b.speed_mm_s));
+        let [first, .., last] = &rows[..] else {
+            return Err(ComputedError::TooFewSpeeds { count: rows.len() });
+        };
+        let curve = |value: fn(&FrictionRow) -> f64| {
+            let speeds = rows.iter().map(|row| row.speed_mm_s.ln()).collect();
+            CubicHermite::monotone_parabolas(speeds, rows.iter().map(value).collect())
+        };
+        Ok(Self {
+            model,
+            kind: first.kind,
+            pressure_mpa: first.pressure_mpa,
+            shortest_wavelength_mm: first.shortest_wavelength_mm,
+            speeds_mm_s: [first.speed_mm_s, last.speed_mm_s],
+            friction: curve(|row| row.mean),
+            ln_area: curve(|row| row.contact_area_fraction.ln()),
+            error: curve(|row| row.error_estimate.unwrap_or(0.0)),
+            errors_known: rows.iter().all(|row| row.error_estimate.is_some()),
+        })
+    }
+
+    /// At a speed in mm/s, interpolated in its logarithm. `shifted` tells the message that the speed is that of another
+    /// temperature.
+    ///
+    /// # Errors
+    /// [`ComputedError::OutsideSpeeds`].
+    pub fn at(&self, speed_mm_s: f64, shifted: bool) -> Result<ComputedAt, ComputedError> {
+        let [lowest, highest] = self.speeds_mm_s;
+        // A speed that was typed with fewer digits than the other is still the end of the range.
+        let slack = 1.0 + 1e-6;
+        if !(speed_mm_s * slack >= lowest && speed_mm_s <= highest * slack) {
+            return Err(ComputedError::OutsideSpeeds {
+                speed_mm_s,
+                range: self.speeds_mm_s,
+                shifted,
+            });
+        }
+        let at = speed_mm_s.clamp(lowest, highest).ln();
+        Ok(ComputedAt {
+            hysteretic: self.friction.at(at),
+            contact_area_fraction: self.ln_area.at(at).exp(),
+            error: self.errors_known.then(|| self.error.at(at)),
+        })
+    }
+}
+
+/// The rows of one value of a property: the one asked for, or the only one there is.
+fn of<T: Copy + PartialEq + std::fmt::Display>(
+    rows: Vec<FrictionRow>,
+    what: &'static str,
+    option: &'static str,
+    asked: Option<T>,
+    property: impl Fn(&FrictionRow) -> T,
+    same: impl Fn(&T, &T) -> bool,
+) -> Result<Vec<FrictionRow>, ComputedError> {
+    let mut found: Vec<T> = Vec::new();
+    for row in &rows {
+        let value = property(row);
+        if !found.iter().any(|known| same(known, &value)) {
+            found.push(value);
+        }
+    }
+    let names = || found.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let chosen = match asked {
+        Some(asked) if found.iter().any(|value| same(value, &asked)) => asked,
+        Some(asked) => {
+            return Err(ComputedError::Missing { what, asked: asked.to_string(), found: names() });
+        }
+        None if found.len() == 1 => found[0],
+        None => return Err(ComputedError::Several { what, found: names(), option }),
+    };
+    Ok(rows.into_iter().filter(|row| same(&property(row), &chosen)).collect())
+}
