@@ -6,6 +6,7 @@ mod common;
 mod outcome;
 
 mod campaign;
+mod exports;
 mod files;
 mod inspect;
 mod laboratory;

@@ -8,6 +8,7 @@ mod digests;
 
 mod added;
 mod areal;
+mod areal_failures;
 mod bem;
 mod changes;
 mod characterise;

@@ -29,12 +29,12 @@ mod theories;
 use super::approximate::WAVES;
 use super::areal::AREAL_CURVES;
 use super::bem::{CURVES, Given};
-use super::characterise::{RELIABLE_KEY, length_in};
+use super::characterise::{AREAL_PARAMETERS, RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::fem;
 use super::friction::{Condition, FrictionAt};
 use super::hybrid::{self, Hybrid};
-use super::realise::{AREAL_SURFACES, read_surfaces};
+use super::realise::{AREAL_SURFACES, ArealRow, read_surfaces};
 use super::{Stage, StageError};
 use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
@@ -87,6 +87,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         fem: chain.fem.is_some(),
         multilevel: chain.multilevel.is_some(),
         scans: chain.ingest.is_some(),
+        lines: chain.has_lines(),
         angle_deg: chain.areal.angles_deg.first().copied().filter(|_| chain.has_areal_surfaces()),
         layer_mm: chain.areal.thickness_mm,
         lines_deg: match chain.ingest.and_then(|ingest| ingest.map_lines) {
@@ -108,7 +109,8 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     };
     let planned = Planned::new(parameters, run)
         .reading(super::bem::CURVES)
-        .reading(super::approximate::WAVES)
+        .reading_if(!models.maps_alone(), super::approximate::WAVES)
+        .reading_if(models.maps_alone(), AREAL_PARAMETERS)
         .reading_if(chain.micro.is_some(), super::hybrid::HYBRID)
         .reading_if(chain.fem.is_some(), super::fem::FEM)
         .reading_if(chain.multilevel.is_some(), super::multilevel::AVERAGES)
@@ -168,6 +170,8 @@ pub struct Models {
     pub multilevel: bool,
     /// The recipe has scans.
     pub scans: bool,
+    /// Line scans are taken of them.
+    pub lines: bool,
     /// The first direction of sliding over areal surfaces, if there are any.
     pub angle_deg: Option<f64>,
     /// Thickness in mm of the layer that slides over them; a half-space if there is none.
@@ -191,6 +195,11 @@ impl Models {
              ratio_to_measured compares both",
             self.lines_deg
         ))
+    }
+
+    /// Maps stand alone: nothing was fitted to lines.
+    fn maps_alone(self) -> bool {
+        self.scans && !self.lines
     }
 
     /// Above this root mean square slope waves are corrected.
@@ -219,7 +228,11 @@ pub fn run(
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let (fitted, metadata) = run.read_table(WAVES)?;
+    let (fitted, metadata) = if models.maps_alone() {
+        (Vec::new(), run.read_table(AREAL_PARAMETERS)?.1)
+    } else {
+        run.read_table(WAVES)?
+    };
     let half_space = run.rows(CURVES)?;
     let surfaces = read_surfaces(run)?;
     let areal = if models.angle_deg.is_some() { run.rows(AREAL_SURFACES)? } else { Vec::new() };
@@ -229,7 +242,7 @@ pub fn run(
     if let Some(angle_deg) = models.angle_deg {
         let curves = run.rows(AREAL_CURVES)?;
         let first = curves.iter().filter(|row| row.angle_deg == angle_deg);
-        rows.extend(average(Model::Bem, first.map(FrictionAt::from).collect()));
+        rows.extend(average(Model::Bem, of_all(first.map(FrictionAt::from).collect(), &areal)));
     }
     if models.hybrid.is_some() {
         let hybrid = run.rows(hybrid::HYBRID)?;
@@ -287,6 +300,15 @@ fn complete(values: Vec<FrictionAt>, half_space: &[FrictionAt]) -> Vec<FrictionA
     };
     let (present, wanted): (BTreeMap<_, u32>, _) = (counts(&values), counts(half_space));
     let full = |value: &FrictionAt| Some(&present[&key(value)]) == wanted.get(&key(value));
+    values.into_iter().filter(full).collect()
+}
+
+/// The values that every areal surface of their kind has, for the same reason.
+fn of_all(values: Vec<FrictionAt>, surfaces: &[ArealRow]) -> Vec<FrictionAt> {
+    let wanted = |kind| surfaces.iter().filter(|surface| surface.kind == kind).count();
+    let mut present = BTreeMap::new();
+    values.iter().for_each(|value| *present.entry(key(value)).or_insert(0) += 1);
+    let full = |value: &FrictionAt| present[&key(value)] == wanted(value.curve.kind);
     values.into_iter().filter(full).collect()
 }
 
