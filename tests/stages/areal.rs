@@ -243,6 +243,10 @@ fn maps_alone_and_isotropic_surfaces_of_lines_are_surfaces_too() {
     assert!(rows.len() == 2 && rows.iter().all(|row| row.kind.method == Method::Isotropic));
     // What the choice of scans does to them is not known.
     assert!(rows.iter().all(|row| row.scan_error.is_none() && row.error_estimate.is_none()));
+    let budget = view.rows(BUDGET).unwrap();
+    let scans = budget.iter().filter(|row| row.part == Part::Scans);
+    let reason = "isotropic surfaces have the averaged spectrum of all scans";
+    assert!(scans.clone().count() == 2 && scans.clone().all(|row| row.remedy.starts_with(reason)));
 }
 
 #[test]
