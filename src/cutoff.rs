@@ -12,12 +12,12 @@ use crate::plot::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::recipe::Recipe;
 use crate::report::About;
 use crate::requirement::InvalidRecipe;
-use crate::stages::StageError;
 use crate::stages::approximate::WAVES;
 use crate::stages::bem::Given;
-use crate::stages::ingest::{MAPS, read_maps, read_windows};
-use crate::stages::realise::{LONGEST_GAP, Method, SurfaceKind};
+use crate::stages::ingest::{MAPS, SCANS, read_maps, read_windows};
+use crate::stages::realise::{AREAL_SURFACES, LONGEST_GAP, Method, SurfaceKind};
 use crate::stages::tables::{FRICTION, FrictionRow};
+use crate::stages::{Job, StageError};
 use crate::surface::{HeightMap, LineScan};
 use crate::units::Units;
 use serde::Serialize;
@@ -121,8 +121,7 @@ pub fn study(
         let view = RunView::of(&folder);
         if base_mm.is_none() {
             // The recipe leaves it to the scans: what they gave is the shortest of all.
-            let fitted = view.rows(WAVES)?;
-            base_mm = fitted.iter().map(|row| row.wavelength_mm).reduce(f64::min);
+            base_mm = shortest_wavelength_mm(&variant, &view)?;
         }
         if octave == 0 {
             window_mm = shortest_window_mm(&view)?;
@@ -148,12 +147,29 @@ pub fn study(
     Ok(Cutoff { material, rows })
 }
 
+/// The shortest wavelength in mm that a run found: of the sines, or of maps that stand alone.
+fn shortest_wavelength_mm(recipe: &Recipe, view: &RunView) -> Result<Option<f64>, CutoffError> {
+    let wavelengths: Vec<f64> = if has_lines(recipe) {
+        view.rows(WAVES)?.iter().map(|row| row.wavelength_mm).collect()
+    } else {
+        view.rows(AREAL_SURFACES)?.iter().map(|row| row.shortest_wavelength_mm).collect()
+    };
+    Ok(wavelengths.into_iter().reduce(f64::min))
+}
+
+fn has_lines(recipe: &Recipe) -> bool {
+    match recipe.job() {
+        Ok(Job::Chain(chain)) => chain.has_lines(),
+        _ => false,
+    }
+}
+
 /// Waves that a window holds at least, to be a profile of them.
 const WAVES_IN_WINDOW: f64 = 4.0;
 
 /// Length of the shortest window of a line or side of a map in mm.
 fn shortest_window_mm(view: &RunView) -> Result<f64, CutoffError> {
-    let windows = read_windows(view)?;
+    let windows = if view.has(SCANS)? { read_windows(view)? } else { Vec::new() };
     let maps = if view.has(MAPS)? { read_maps(view)? } else { Vec::new() };
     let sides = maps.iter().flat_map(HeightMap::lengths).fold(f64::INFINITY, f64::min);
     let length = |window: &LineScan| {

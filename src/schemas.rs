@@ -56,6 +56,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         arrays(&bem::fields_schema()),
         table::<areal::ArealSolveRow>()?,
         table::<areal::ArealCurveRow>()?,
+        table::<areal::ArealUnsolvedRow>()?,
         arrays(&areal::areal_fields_schema()),
         table::<micro::SampleRow>()?,
         table::<micro::LawRow>()?,

@@ -18,6 +18,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `array_reader` | reading of the files of arrays |
 //! | `arrays` | named one-dimensional arrays as HDF5 files |
 //! | `columns` | from a row type to the columns of its table |
 //! | `content` | digest of the content of a table, independent of the bytes of its file |
@@ -35,6 +36,7 @@
 //! | `table` | tables as Arrow IPC files |
 //! | `view` | the results in an output folder, for reading |
 
+mod array_reader;
 mod arrays;
 mod columns;
 mod content;

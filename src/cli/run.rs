@@ -18,7 +18,7 @@ use asperity::artifact::{Manifest, RunFolder, RunView};
 use asperity::files::name::path_text;
 use asperity::pipeline::{Event, PipelineError, Ready, Selection};
 use asperity::recipe::Recipe;
-use asperity::stages::ingest::{CLEANING_FILE, FAULTS, FaultRow};
+use asperity::stages::ingest::{CLEANING_FILE, FAULTS, FaultRow, MAP_WINDOWS};
 use asperity::stages::{Stage, Watch};
 use asperity::sweep;
 
@@ -216,6 +216,12 @@ fn warn(quiet: bool, manifest: &Manifest) {
     }
 }
 
+/// Whether a scan is a line of one of the maps: `map_row_0012`, `map_column_0003`.
+fn is_line_of(scan: &str, maps: &BTreeSet<&str>) -> bool {
+    let map = |line: &'static str| scan.rsplit_once(line).map(|(map, _)| map);
+    ["_row_", "_column_"].into_iter().filter_map(map).any(|map| maps.contains(map))
+}
+
 /// One line on what was cleaned from the scans, and the file with the details.
 fn cleaned(quiet: bool, out: &Path) {
     let view = RunView::of(out);
@@ -224,9 +230,15 @@ fn cleaned(quiet: bool, out: &Path) {
     let taken = |row: &&FaultRow| {
         row.count > 0 && matches!(row.decision.as_str(), "missing" | "cut" | "averaged")
     };
+    // The faults of a map are there again in the lines that are taken of it.
+    let maps = view.rows(MAP_WINDOWS).unwrap_or_default();
+    let has_faults = |map: &str| rows.iter().any(|row| row.scan == map);
+    let maps = maps.iter().map(|row| row.map.as_str()).filter(|map| has_faults(map));
+    let maps: BTreeSet<&str> = maps.collect();
+    let of_map = |row: &&FaultRow| is_line_of(&row.scan, &maps);
     let mut counts: BTreeMap<&str, u64> = BTreeMap::new();
     let mut scans = BTreeSet::new();
-    for row in rows.iter().filter(taken) {
+    for row in rows.iter().filter(taken).filter(|row| !of_map(row)) {
         *counts.entry(&row.fault).or_default() += row.count;
         scans.insert(&row.scan);
     }
@@ -245,4 +257,20 @@ fn cleaned(quiet: bool, out: &Path) {
             report.display()
         ),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_maps_are_told_from_scans() {
+        let maps = BTreeSet::from(["road", "a_row_b"]);
+        for line in ["road_row_0000", "road_column_0012", "a_row_b_row_0001"] {
+            assert!(is_line_of(line, &maps), "{line}");
+        }
+        for scan in ["road", "a_row_b", "track_row_0000", "road_2"] {
+            assert!(!is_line_of(scan, &maps), "{scan}");
+        }
+    }
 }

@@ -17,7 +17,7 @@ use crate::stages::Watch;
 use crate::stages::tables::{self};
 use rayon::prelude::*;
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -255,7 +255,7 @@ fn finish(
         stage: STAGE.to_owned(),
         stage_revision: REVISION,
         output_schemas: vec![FRICTION.schema()],
-        parameters: json!({ "tolerance": prepared.cases[0].recipe.tolerance }),
+        parameters: parameters(&prepared.cases[0].recipe),
         inputs,
     };
     let folder = RunFolder::share(prepared.layout.out())?;
@@ -269,6 +269,17 @@ fn finish(
     let manifest = Manifest::new(&identity, pending.outputs().to_vec(), warnings, seconds)?;
     pending.commit(&manifest)?;
     Ok(manifest)
+}
+
+/// What captions of the collected table say of all cases.
+fn parameters(recipe: &Recipe) -> Value {
+    let areal = &recipe.areal;
+    json!({
+        "tolerance": recipe.tolerance,
+        // The friction tables have the first direction.
+        "angle_deg": areal.angles_deg.first(),
+        "thickness_mm": areal.thickness_mm,
+    })
 }
 
 /// Brings the stages after the surfaces up to date; returns the friction table and its rows.

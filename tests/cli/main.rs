@@ -7,6 +7,7 @@ mod outcome;
 
 mod adhesion;
 mod campaign;
+mod exports;
 mod files;
 mod inspect;
 mod laboratory;

@@ -308,7 +308,7 @@ fn a_report_tells_maps_from_profiles() {
         "<section id=\"areal\"",
         "id=\"figure-pressure-map\"",
         "id=\"figure-direction\"",
-        "1 height map was kept beside the lines, with 2 of 2 windows.",
+        "1 height map was read, and 2 of 2 windows kept.",
         "measured maps of 2 windows, waves from 0.6000 mm, 10 mm/s at 0° from x",
         "Areal surfaces, made periodic</caption>",
         "contacts of areal surfaces took",

@@ -86,6 +86,17 @@ fn impossible_scans_are_explained() {
         let error = asperity_at(&format!("synth --out {{}}/new {options}"), folder.path()).error(2);
         assert!(error.contains(part), "{options}: {error}");
     }
+    let map = |options: &str| {
+        asperity_at(&format!("synth map --out {{}}/new.x3p {options}"), folder.path()).error(2)
+    };
+    let error = map("--length-mm 1000");
+    assert!(error.contains("--length-mm is 1000 mm: it must be from 0.4 to "), "{error}");
+    assert!(error.trim_end().ends_with(" mm"), "{error}");
+    let error = map("--missing-diameter-um 1");
+    assert!(
+        error.contains("--missing-diameter-um is 1 um: it must be from 50 to 19200 um"),
+        "{error}"
+    );
     assert!(asperity("synth").error(2).contains("--out <DIR>"));
     assert!(!folder.path().join("new").exists());
     let file = folder.path().join("file");

@@ -42,8 +42,15 @@ pressures_mpa = [0.2]
 points_per_shortest_wavelength = 16
 "#;
 
-fn campaign(columns: usize, heights: Vec<f64>) -> Campaign {
+pub(super) fn campaign(columns: usize, heights: Vec<f64>) -> Campaign {
     let campaign = Campaign::new();
+    write_map(&campaign, "map.sdf", columns, heights);
+    campaign.write("recipe.toml", RECIPE);
+    campaign
+}
+
+/// Writes a map of points every 50 µm.
+pub(super) fn write_map(campaign: &Campaign, name: &str, columns: usize, heights: Vec<f64>) {
     let scan = ScanFile {
         format: "test".into(),
         detected: String::new(),
@@ -56,18 +63,16 @@ fn campaign(columns: usize, heights: Vec<f64>) -> Campaign {
         heights,
         instrument: Vec::new(),
     };
-    std::fs::write(campaign.path("map.sdf"), write_sdf(&scan)).unwrap();
-    campaign.write("recipe.toml", RECIPE);
-    campaign
+    std::fs::write(campaign.path(name), write_sdf(&scan)).unwrap();
 }
 
 /// 6.4 mm of a rough road: four windows.
-fn road() -> Campaign {
+pub(super) fn road() -> Campaign {
     let map = SyntheticMap { length: 6.4e-3, rms_height: 5e-5, ..SyntheticMap::bundled() };
     campaign(128, map.generate("map").unwrap().heights)
 }
 
-fn warnings(campaign: &Campaign, stage: &str) -> Vec<String> {
+pub(super) fn warnings(campaign: &Campaign, stage: &str) -> Vec<String> {
     let text = campaign.read(&format!("out/{stage}/manifest.json"));
     serde_json::from_str::<Manifest>(&text).unwrap().warnings
 }
@@ -238,6 +243,10 @@ fn maps_alone_and_isotropic_surfaces_of_lines_are_surfaces_too() {
     assert!(rows.len() == 2 && rows.iter().all(|row| row.kind.method == Method::Isotropic));
     // What the choice of scans does to them is not known.
     assert!(rows.iter().all(|row| row.scan_error.is_none() && row.error_estimate.is_none()));
+    let budget = view.rows(BUDGET).unwrap();
+    let scans = budget.iter().filter(|row| row.part == Part::Scans);
+    let reason = "isotropic surfaces have the averaged spectrum of all scans";
+    assert!(scans.clone().count() == 2 && scans.clone().all(|row| row.remedy.starts_with(reason)));
 }
 
 #[test]
@@ -273,6 +282,7 @@ fn what_does_not_go_together_is_told() {
     assert!(message.contains("areal") && message.contains("[ingest.maps]"), "{message}");
     let message = error("window_length_mm = [3.2, 3.2]", "window_length_mm = [30.0, 3.2]");
     assert!(message.contains("window_length_mm") && message.contains("along x"), "{message}");
+    assert!(message.contains("no height map is left (ingest.maps): map map is"), "{message}");
     let message = error("window_length_mm = [3.2, 3.2]", "spike_threshold = -1.0");
     assert!(message.contains("ingest.maps.spike_threshold = -1.0"), "{message}");
     let message = error("[bem]", "[areal]\nmemory_gb = 1e-3\n\n[bem]");
@@ -293,7 +303,7 @@ fn what_does_not_go_together_is_told() {
     }
     let small = "periodic = \"blend\"\nprofiles = false\n\n[bem]\narea_fractions = [1e-6]";
     let campaign = road();
-    campaign.edit("recipe.toml", "area_fractions = [0.05]\n", "");
+    campaign.edit("recipe.toml", "area_fractions = [0.05]\npressures_mpa = [0.2]\n", "");
     campaign.edit("recipe.toml", "periodic = \"blend\"\n\n[bem]", small);
     let stop = try_run(&recipe(&campaign), &campaign.path("out"), Selection::default());
     let message = stop.unwrap_err().to_string();

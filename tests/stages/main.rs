@@ -9,6 +9,7 @@ mod digests;
 mod added;
 mod adhesion;
 mod areal;
+mod areal_failures;
 mod bem;
 mod changes;
 mod characterise;

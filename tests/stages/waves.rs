@@ -183,7 +183,7 @@ fn realise_stores_the_waves_of_the_fit_with_phases_of_the_seed() {
     let realised = |seed| -> Vec<Surface> {
         let section = format!("waves = [3, 4]\nrealisations = 5\nseed = {seed}");
         let parameters: Realise = toml::from_str(&section).unwrap();
-        commit(&folder, "realise", |c| realise::run(&parameters, false, &folder, c)).unwrap();
+        commit(&folder, "realise", |c| realise::run(&parameters, false, None, &folder, c)).unwrap();
         read_surfaces(&folder).unwrap()
     };
     let surfaces = realised(7);

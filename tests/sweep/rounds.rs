@@ -95,6 +95,8 @@ fn areal_surfaces_are_spread_with_the_profiles() {
     assert_eq!(stages(&plan), ["areal", "bem"]);
     quietly(&campaign, &format!("sweep collect {plan}")).result();
     assert_eq!(tables(&campaign, "out"), expected);
+    let text = quietly(&campaign, "export out --format markdown").result();
+    assert!(text.contains("10 mm/s at 0° from x, "), "{text}");
 }
 
 #[test]

@@ -56,7 +56,7 @@ impl Export {
     ) -> Result<(), CliError> {
         let rows = view.rows(FRICTION)?;
         let manifest = view.stage_manifest(STAGE)?;
-        let tolerance = manifest.and_then(|manifest| manifest.parameters["tolerance"].as_f64());
+        let parameter = |key: &str| manifest.as_ref().and_then(|m| m.parameters[key].as_f64());
         let mut text = String::new();
         for rows in rows.chunk_by(|a, b| key(a) == key(b)) {
             let friction: Vec<FrictionRow> = rows
@@ -68,9 +68,9 @@ impl Export {
             let about = About {
                 rubber: rubber.clone(),
                 temperature_c: *temperature_c,
-                tolerance,
-                angle_deg: None,
-                thickness_mm: None,
+                tolerance: parameter("tolerance"),
+                angle_deg: parameter("angle_deg"),
+                thickness_mm: parameter("thickness_mm"),
             };
             // Writing to a string cannot fail.
             let _ = write!(text, "{}", one(&title(&rows[0]), &friction_tables(&friction), &about));

@@ -204,20 +204,42 @@ const LENGTHS: [(&str, &str, &str, f64); 14] = [
     ("missing_diameter_m", "--missing-diameter-um", "um", 1e-6),
 ];
 
-/// The error under the name of the option, with the value in its unit.
+/// Six significant digits without zeros at the end.
+fn shortest(number: f64) -> String {
+    let text = significant(number);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// What a length may be, such as `from 0.001 to 0.4`, from m into the unit of its option.
+fn in_unit(allowed: &str, unit: &str, metres: f64) -> String {
+    let mut has_length = false;
+    let word = |word: &str| match word.parse::<f64>() {
+        Ok(0.0) => "0".to_owned(),
+        Ok(length) => {
+            has_length = true;
+            shortest(length / metres)
+        }
+        Err(_) => word.to_owned(),
+    };
+    let words: Vec<String> = allowed.split(' ').map(word).collect();
+    let unit = if has_length { format!(" {unit}") } else { String::new() };
+    words.join(" ") + &unit
+}
+
+/// The error under the name of the option, with the value and its limits in its unit.
 fn impossible(error: SynthesisError) -> CliError {
     let SynthesisError::OutOfRange { parameter, value, allowed } = &error else {
         return CliError::of(error.kind(), error.to_string());
     };
     if let Some((_, option, unit, metres)) = LENGTHS.iter().find(|known| known.0 == *parameter) {
-        let mut typed = significant(value / metres);
-        if typed.contains('.') && !typed.contains('e') {
-            typed = typed.trim_end_matches('0').trim_end_matches('.').to_owned();
-        }
-        let in_metres =
-            if allowed.contains(|c: char| ('1'..='9').contains(&c)) { " m" } else { "" };
+        let typed = shortest(value / metres);
         return CliError::input(format!(
-            "{option} is {typed} {unit}: it must be {allowed}{in_metres}"
+            "{option} is {typed} {unit}: it must be {}",
+            in_unit(allowed, unit, *metres)
         ));
     }
     let option = parameter.replace("outer_regime.", "outer-").replace("stones.", "stone-");

@@ -87,7 +87,10 @@ fn series(rows: &[&&&ArealCurveRow], windows: &Windows, colour: usize, shift: f6
         rows
     };
     let (mut means, mut bars) = (vec![], vec![]);
-    for rows in directions.chunk_by(|a, b| a.angle_deg == b.angle_deg) {
+    let of_one = || directions.chunk_by(|a, b| a.angle_deg == b.angle_deg);
+    let count = of_one().map(<[_]>::len).max();
+    // A mean over some of the surfaces alone is not to be compared with those over all.
+    for rows in of_one().filter(|rows| Some(rows.len()) == count) {
         let at = rows[0].angle_deg + shift;
         let estimate = mean(rows, windows);
         means.push((at, estimate.mean));
@@ -97,7 +100,6 @@ fn series(rows: &[&&&ArealCurveRow], windows: &Windows, colour: usize, shift: f6
         }
     }
     let colour = Colour::Nth(colour);
-    let count = directions.chunk_by(|a, b| a.angle_deg == b.angle_deg).map(<[_]>::len).max();
     let label = match count {
         None | Some(0 | 1) => format!("{}, 1 surface", directions[0].kind),
         Some(count) => format!("{}, mean of {count}, 95 %", directions[0].kind),

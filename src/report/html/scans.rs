@@ -27,10 +27,14 @@ impl Report<'_> {
         let points: u64 = scans.iter().map(|scan| scan.points_read).sum();
         Ok(html! {
             (self.warnings(&[stages::ingest::STAGE])?)
-            p { (scans.len()) " scans with " (points) " points came in; " (windows.len() - rejected.len())
-                " of " (windows.len()) " windows were kept." }
+            @if scans.is_empty() {
+                p { "No line scans were taken of the height maps (" code { "realise.profiles = false" } ")." }
+            } @else {
+                p { (scans.len()) " scans with " (points) " points came in; " (windows.len() - rejected.len())
+                    " of " (windows.len()) " windows were kept." }
+            }
             @if !maps.is_empty() { p { (map_sentence(&maps)) } }
-            (scan_table(&scans))
+            @if !scans.is_empty() { (scan_table(&scans)) }
             @if found.is_empty() {
                 p { "No faults were found in the scans." }
             } @else {
@@ -96,7 +100,7 @@ fn map_sentence(windows: &[MapRow]) -> String {
     } else {
         format!("{} height maps were", maps.len())
     };
-    format!("{maps} kept beside the lines, with {kept} of {} windows.", windows.len())
+    format!("{maps} read, and {kept} of {} windows kept.", windows.len())
 }
 
 fn scan_table(scans: &[ScanReportRow]) -> Markup {

@@ -43,8 +43,11 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let chain = request.chain()?;
     let run =
         |inputs: &Inputs, context: &mut Context| run(chain.approximate, &inputs.results, context);
-    // A chain that states its waves needs no scans.
+    // A chain that states its waves needs no scans, and maps that stand alone have no lines to fit.
     let scanned = chain.ingest.is_some();
+    if scanned && !chain.has_lines() {
+        return None;
+    }
     let planned = Planned::new(json!(chain.approximate), run);
     Some(planned.reading_if(scanned, super::characterise::CORRELATION))
 }

@@ -1,17 +1,17 @@
 //! One curve of friction over contact area: one areal surface at one speed in one direction.
 
 use super::task::{Sweep, Task};
-use super::{Areal, ArealCurveRow, ArealSolveRow};
+use super::{Areal, ArealCurveRow, ArealSolveRow, ArealUnsolvedRow, scale};
 use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore};
 use crate::contact::areal::{ArealContact, ArealSetup, ArealSurface, Sliding};
-use crate::contact::curve::{CurveError, friction_curve};
+use crate::contact::curve::{Accuracy, CurveError, friction_curve_within};
 use crate::contact::refine::{AREAL, LEAST_CONTACT_POINTS, OnGrid, on_grid};
 use crate::contact::{CurvePoint, CurveValue};
 use crate::numerics::Interrupt;
 use crate::rubber::Rubber;
-use crate::stages::SolveError;
 use crate::stages::bem::{Given, solved};
 use crate::stages::kept::{self, Kept};
+use crate::stages::{SolveError, StageError};
 use crate::units::Units;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -34,7 +34,13 @@ const AREA_PER_PRESSURE: f64 = 2.506_628_274_631;
 pub(crate) struct CurveResult {
     pub solves: Vec<ArealSolveRow>,
     pub curve: Vec<ArealCurveRow>,
+    /// What the curve has no value for.
+    pub unsolved: Vec<ArealUnsolvedRow>,
+    /// The first reason why it has not.
+    pub failure: Option<StageError>,
     pub fields: Vec<ArrayDataset>,
+    /// Friction to which relative errors of the curve refer where friction is less.
+    pub least_friction: f64,
 }
 
 /// Solves one surface at one speed in one direction and keeps what it solved.
@@ -58,8 +64,17 @@ struct Grids<'a> {
     interrupted: &'a Interrupt,
 }
 
-/// Friction at what the recipe asks for, in its order, and the fields.
-type Computed = (Vec<(Given, CurveValue)>, Vec<ArrayDataset>);
+/// Friction at what the recipe asks for, in its order.
+#[derive(Default)]
+pub(super) struct Computed {
+    pub values: Vec<(Given, CurveValue)>,
+    /// Areas and pressures in Pa without a value, and why.
+    pub unsolved: Vec<(Given, f64, CurveError<SolveError>)>,
+    pub fields: Vec<ArrayDataset>,
+}
+
+/// Values at some of the areas that were asked for, and why there is none at the others.
+type Settled = (Vec<CurveValue>, Vec<(f64, CurveError<SolveError>)>);
 
 impl<'a> Curve<'a> {
     pub fn new(
@@ -89,35 +104,80 @@ impl<'a> Curve<'a> {
         self.kept.finish(task)
     }
 
-    /// Friction at the areas, then at the pressures of the recipe, and the fields where they are asked for.
+    /// Friction at the areas, then at the pressures of the recipe, and the fields where they are asked for. What has no
+    /// solution, or does not settle on a curve, is left out with the reason.
+    ///
+    /// # Errors
+    /// Those that more than one value would have: the interrupt, the store, a problem that is none.
     pub fn compute(&mut self, sweep: &Sweep) -> Result<Computed, CurveError<SolveError>> {
         let Sweep { areal, wanted } = sweep;
-        let mut values = Vec::new();
-        let mut fields = Vec::new();
-        if let Some(&smallest) = wanted.area_fractions.first() {
-            let points = self.grids.points[0] * self.grids.points[1];
-            if smallest * (points as f64) < LEAST_CONTACT_POINTS {
-                let unresolved = SolveError::Unresolved { area: smallest, points };
-                return Err(CurveError::Solve(unresolved));
-            }
-            let guess = self.first_guess(smallest);
-            let curve = |targets: &[f64], this: &mut Self| {
-                friction_curve(targets, areal.tolerance, guess, |pressure| this.point(pressure))
-            };
-            let of_areas = curve(&wanted.area_fractions, self)?;
-            values.extend(of_areas.into_iter().map(|value| (Given::Area, value)));
-            if !areal.field_area_fractions.is_empty() {
-                // The solves are in the store by now, so this second curve costs next to nothing.
-                for value in curve(&areal.field_area_fractions, self)? {
-                    fields.extend(self.grids.fields(&value).map_err(CurveError::Solve)?);
+        let mut computed = Computed::default();
+        let (values, unsolved) = self.settled(&wanted.area_fractions, areal.tolerance)?;
+        computed.values.extend(values.into_iter().map(|value| (Given::Area, value)));
+        computed.unsolved.extend(unsolved.into_iter().map(|(area, why)| (Given::Area, area, why)));
+        // The solves are in the store by now, so this second curve costs next to nothing.
+        let (values, unsolved) = self.settled(&areal.field_area_fractions, areal.tolerance)?;
+        for value in values {
+            computed.fields.extend(self.grids.fields(&value).map_err(CurveError::Solve)?);
+        }
+        let known = |area: &f64| wanted.area_fractions.contains(area);
+        let of_fields = unsolved.into_iter().filter(|(area, _)| !known(area));
+        computed.unsolved.extend(of_fields.map(|(area, why)| (Given::Area, area, why)));
+        for pressure in wanted.pressures_mpa.iter().map(|pressure| pressure.mpa_to_pa()) {
+            match self.point(pressure) {
+                Ok(point) => computed.values.push((Given::Pressure, solved(point))),
+                Err(error) if error.is_no_solution() => {
+                    computed.unsolved.push((Given::Pressure, pressure, CurveError::Solve(error)));
                 }
+                Err(error) => return Err(CurveError::Solve(error)),
             }
         }
-        for pressure_mpa in &wanted.pressures_mpa {
-            let point = self.point(pressure_mpa.mpa_to_pa()).map_err(CurveError::Solve)?;
-            values.push((Given::Pressure, solved(point)));
+        Ok(computed)
+    }
+
+    /// Friction at some areas: of all as one curve, or, where that does not settle, of each by itself.
+    fn settled(
+        &mut self,
+        areas: &[f64],
+        tolerance: f64,
+    ) -> Result<Settled, CurveError<SolveError>> {
+        match self.of_areas(areas, tolerance) {
+            Ok(values) => Ok((values, Vec::new())),
+            Err(error) if !is_no_value(&error) => Err(error),
+            Err(error) if areas.len() == 1 => Ok((Vec::new(), vec![(areas[0], error)])),
+            Err(_) => {
+                let (mut values, mut unsolved) = Settled::default();
+                for &area in areas {
+                    match self.of_areas(&[area], tolerance) {
+                        Ok(value) => values.extend(value),
+                        Err(error) if is_no_value(&error) => unsolved.push((area, error)),
+                        Err(error) => return Err(error),
+                    }
+                }
+                Ok((values, unsolved))
+            }
         }
-        Ok((values, fields))
+    }
+
+    fn of_areas(
+        &mut self,
+        areas: &[f64],
+        tolerance: f64,
+    ) -> Result<Vec<CurveValue>, CurveError<SolveError>> {
+        let Some(&smallest) = areas.first() else { return Ok(Vec::new()) };
+        let points = self.grids.points[0] * self.grids.points[1];
+        if smallest * (points as f64) < LEAST_CONTACT_POINTS {
+            return Err(CurveError::Solve(SolveError::Unresolved { area: smallest, points }));
+        }
+        let guess = self.first_guess(smallest);
+        let accuracy = Accuracy { tolerance, least_friction: self.least_friction() };
+        friction_curve_within(areas, accuracy, guess, |pressure| self.point(pressure))
+    }
+
+    /// Friction to which relative errors refer where friction is less, see [`scale`].
+    pub fn least_friction(&self) -> f64 {
+        let Task { surface, speed_mm_s, .. } = self.grids.task;
+        scale::least_friction(&surface.map, self.grids.rubber, speed_mm_s.mm_to_m())
     }
 
     /// All solves of the curve by ascending pressure, each once.
@@ -267,6 +327,15 @@ impl Grids<'_> {
             dataset("pressure", "Pa", solution.pressure),
             dataset("separation", "m", solution.separation),
         ])
+    }
+}
+
+/// Whether a curve has no value for a reason of its own, that other curves need not have.
+fn is_no_value(error: &CurveError<SolveError>) -> bool {
+    match error {
+        CurveError::Solve(error) => error.is_no_solution(),
+        CurveError::NotSmooth { .. } | CurveError::NotBracketed { .. } => true,
+        CurveError::Targets(_) => false,
     }
 }
 

@@ -3,11 +3,15 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `curve` | one curve of friction over contact area: one surface, one speed, one direction |
+//! | `doubts` | what a user is told of the curves |
 //! | `rows` | the tables of the stage |
+//! | `scale` | the friction beside which errors are judged where friction vanishes |
 //! | `task` | one curve as a task of a sweep, which any machine can solve |
 
 mod curve;
+mod doubts;
 mod rows;
+mod scale;
 mod task;
 
 use super::bem::Bem;
@@ -22,8 +26,8 @@ use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::Rubber;
 use curve::CurveResult;
 pub use rows::{
-    AREAL_CURVES, AREAL_FIELDS, AREAL_SOLVES, ArealCurveRow, ArealSolveRow, areal_fields_schema,
-    schemas,
+    AREAL_CURVES, AREAL_FIELDS, AREAL_SOLVES, AREAL_UNSOLVED, ArealCurveRow, ArealSolveRow,
+    ArealUnsolvedRow, areal_fields_schema, schemas,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,6 +52,14 @@ impl Chain<'_> {
     /// Whether maps are kept beside their lines.
     pub fn has_maps(&self) -> bool {
         self.ingest.is_some_and(|ingest| ingest.maps.is_some())
+    }
+
+    /// Whether line scans are taken: not where maps stand alone, because no method makes profiles or needs the statistics of
+    /// lines.
+    pub fn has_lines(&self) -> bool {
+        let realise = self.realise;
+        let needed = realise.has_windows() || realise.is_isotropic() || !realise.waves.is_empty();
+        self.ingest.is_some() && (!self.has_maps() || needed)
     }
 
     /// Whether there are surfaces that are rough in both directions.
@@ -145,8 +157,9 @@ impl Areal {
 /// Solves the contacts that are not in the store and writes the results; returns warnings.
 ///
 /// # Errors
-/// [`StageError::ArealMemory`] for grids that do not fit into the memory that may be taken; [`StageError::ArealContact`] for a
-/// curve that cannot be had; [`StageError::Interrupted`]. Solves that are done are kept in the store.
+/// [`StageError::ArealMemory`] for grids that do not fit into the memory that may be taken; [`StageError::ArealContact`] where
+/// no curve has a value; [`StageError::Interrupted`]. Solves that are done are kept in the store. A value that cannot be had is
+/// left out with a warning and a row in [`AREAL_UNSOLVED`].
 pub fn run(
     parameters: &Areal,
     bem: &Bem,
@@ -161,17 +174,25 @@ pub fn run(
     let sweep = Sweep { areal: parameters.clone(), wanted: bem.wanted() };
     let solve = |task: &Task| task.solve(&sweep, rubber, store, context.watch);
     let tally = Tally::new(context.watch);
-    let results: Vec<CurveResult> = tally.side_by_side(&tasks, tasks.len() as u64, solve)?;
+    let mut results: Vec<CurveResult> = tally.side_by_side(&tasks, tasks.len() as u64, solve)?;
+    if results.iter().all(|result| result.curve.is_empty())
+        && let Some(failure) = results.iter_mut().find_map(|result| result.failure.take())
+    {
+        return Err(failure);
+    }
+    let warnings = doubts::of_curves(&results);
     let pending = &mut context.pending;
     let curves: Vec<_> = results.iter().flat_map(|result| result.curve.iter().cloned()).collect();
     pending.write_rows(AREAL_CURVES, &curves)?;
     let solves: Vec<_> = results.iter().flat_map(|result| result.solves.iter().cloned()).collect();
     pending.write_rows(AREAL_SOLVES, &solves)?;
+    let unsolved: Vec<_> = results.iter().flat_map(|r| r.unsolved.iter().cloned()).collect();
+    pending.write_rows(AREAL_UNSOLVED, &unsolved)?;
     let fields: Vec<ArrayDataset> = results.into_iter().flat_map(|result| result.fields).collect();
     if !fields.is_empty() {
         pending.write_arrays(AREAL_FIELDS, Storage::Compressed, &fields)?;
     }
-    Ok(unresolved(&curves))
+    Ok(warnings)
 }
 
 /// Every curve, the first realisations of all kinds first.
@@ -222,36 +243,4 @@ pub(crate) fn require_memory(
         }
     }
     Ok(())
-}
-
-/// Largest relative error by the grid that is not told of.
-const COARSE: f64 = 0.1;
-
-/// A warning of values whose grid is too coarse for them.
-fn unresolved(curves: &[ArealCurveRow]) -> Vec<String> {
-    let relative = |row: &ArealCurveRow| {
-        row.discretisation_error.map(|error| error / row.friction_coefficient.abs())
-    };
-    let unknown = curves.iter().filter(|row| row.discretisation_error.is_none()).count();
-    let coarse = curves.iter().filter(|row| relative(row).is_some_and(|error| error > COARSE));
-    let worst = coarse.clone().filter_map(relative).fold(0.0, f64::max);
-    let mut warnings = Vec::new();
-    let remedy = "raise areal.points_per_shortest_wavelength, or ask for larger areas";
-    if unknown > 0 {
-        warnings.push(format!(
-            "{unknown} of {} values of areal surfaces have no estimate of their error by the grid, because coarser grids do \
-             not resolve their contacts; {remedy}",
-            curves.len()
-        ));
-    }
-    if worst > 0.0 {
-        warnings.push(format!(
-            "{} of {} values of areal surfaces have an error by the grid above {:.0} %, up to {:.0} %; {remedy}",
-            coarse.count(),
-            curves.len(),
-            100.0 * COARSE,
-            100.0 * worst
-        ));
-    }
-    warnings
 }

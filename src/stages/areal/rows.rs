@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 pub const AREAL_SOLVES: Table<ArealSolveRow> = Table::new("areal", "solves.arrow");
 /// Friction at the contact areas and pressures of the recipe: `curves.arrow`.
 pub const AREAL_CURVES: Table<ArealCurveRow> = Table::new("areal", "curves.arrow");
+/// Contact areas and pressures of the recipe that a curve has no value for: `unsolved.arrow`.
+pub const AREAL_UNSOLVED: Table<ArealUnsolvedRow> = Table::new("areal", "unsolved.arrow");
 /// Pressure and separation on request: `fields.h5`.
 pub const AREAL_FIELDS: ArrayFile = ArrayFile {
     file: ResultFile { stage: "areal", name: "fields.h5" },
@@ -119,9 +121,45 @@ impl Row for ArealCurveRow {
     const VERSION: u32 = 2;
 }
 
+/// A contact area or pressure of the recipe at which one areal surface has no friction, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ArealUnsolvedRow {
+    /// Which surfaces.
+    #[serde(flatten)]
+    pub kind: SurfaceKind,
+    /// Number of the realisation, from 1.
+    pub realisation: u32,
+    /// Sliding speed.
+    #[schemars(extend("unit" = "mm/s"))]
+    pub speed_mm_s: f64,
+    /// Direction of sliding from x towards y.
+    #[schemars(extend("unit" = "deg"))]
+    pub angle_deg: f64,
+    /// What was asked for: a contact area fraction or a mean pressure.
+    pub given: Given,
+    /// Contact area fraction that was asked for; absent where it was a pressure.
+    #[schemars(extend("unit" = "1"))]
+    pub contact_area_fraction: Option<f64>,
+    /// Mean pressure that was asked for; absent where it was an area.
+    #[schemars(extend("unit" = "MPa"))]
+    pub pressure_mpa: Option<f64>,
+    /// Why there is no value.
+    pub reason: String,
+}
+
+impl Row for ArealUnsolvedRow {
+    const SCHEMA: &'static str = "asperity.areal.unsolved";
+    const VERSION: u32 = 1;
+}
+
 /// Schemas of the results.
 pub fn schemas() -> Vec<SchemaVersion> {
-    vec![AREAL_SOLVES.schema(), AREAL_CURVES.schema(), AREAL_FIELDS.schema()]
+    vec![
+        AREAL_SOLVES.schema(),
+        AREAL_CURVES.schema(),
+        AREAL_UNSOLVED.schema(),
+        AREAL_FIELDS.schema(),
+    ]
 }
 
 /// What [`AREAL_FIELDS`] holds.

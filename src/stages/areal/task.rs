@@ -1,7 +1,7 @@
 //! One curve as a task of a sweep, which any machine can solve.
 
 use super::curve::{Curve, CurveResult, problem};
-use super::{Areal, ArealCurveRow};
+use super::{Areal, ArealCurveRow, ArealUnsolvedRow};
 use crate::artifact::{Digest, SolveStore};
 use crate::contact::CurveValue;
 use crate::contact::curve::CurveError;
@@ -9,7 +9,7 @@ use crate::rubber::Rubber;
 use crate::stages::bem::{Given, Wanted};
 use crate::stages::kept::SolveTask;
 use crate::stages::realise::ArealSurface;
-use crate::stages::{SolveError, StageError, Watch};
+use crate::stages::{SolveError, StageError, Watch, keys};
 use crate::units::Units;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -78,7 +78,7 @@ impl SolveTask for Task {
         watch: Watch,
     ) -> Result<CurveResult, StageError> {
         let mut curve = Curve::new(sweep, rubber, self, store, watch.interrupted)?;
-        let (values, fields) = curve.compute(sweep).map_err(|source| self.failed(source))?;
+        let computed = curve.compute(sweep).map_err(|source| self.failed(source))?;
         curve.finish(&self.key(sweep, rubber))?;
         let row = |(given, value): &(Given, CurveValue)| ArealCurveRow {
             kind: self.surface.kind,
@@ -93,12 +93,40 @@ impl SolveTask for Task {
             discretisation_error: value.discretisation_error,
             relative_area_error: value.relative_area_error,
         };
-        let values = values.iter().map(row).collect();
-        Ok(CurveResult { solves: curve.into_solves(), curve: values, fields })
+        let mut failure = None;
+        let mut unsolved = Vec::new();
+        for (given, asked, source) in computed.unsolved {
+            let reason = format!("{source}{}", keys::of_areal_curve(&source));
+            unsolved.push(self.unsolved(given, asked, reason));
+            failure.get_or_insert_with(|| self.failed(source));
+        }
+        Ok(CurveResult {
+            curve: computed.values.iter().map(row).collect(),
+            unsolved,
+            failure,
+            fields: computed.fields,
+            least_friction: curve.least_friction(),
+            solves: curve.into_solves(),
+        })
     }
 }
 
 impl Task {
+    /// The row of an area, or a pressure in Pa, without a value.
+    fn unsolved(&self, given: Given, asked: f64, reason: String) -> ArealUnsolvedRow {
+        let of = |other: Given| (given == other).then_some(asked);
+        ArealUnsolvedRow {
+            kind: self.surface.kind,
+            realisation: self.surface.realisation,
+            speed_mm_s: self.speed_mm_s,
+            angle_deg: self.angle_deg,
+            given,
+            contact_area_fraction: of(Given::Area),
+            pressure_mpa: of(Given::Pressure).map(Units::pa_to_mpa),
+            reason,
+        }
+    }
+
     fn failed(&self, source: CurveError<SolveError>) -> StageError {
         let (kind, realisation) = (self.surface.kind, self.surface.realisation);
         let (speed_mm_s, angle_deg) = (self.speed_mm_s, self.angle_deg);

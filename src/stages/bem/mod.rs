@@ -73,7 +73,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         run(bem, material, &inputs.results, &inputs.store()?, context)
     };
     let chain = request.chain()?;
-    let scans = chain.ingest.is_some() && bem.estimate_scan_error;
+    let scans = chain.has_lines() && bem.estimate_scan_error;
     let windows = bem.average_tolerance.is_some() && chain.realise.has_windows();
     Some(
         Planned::new(bem.resolved(material), run)
@@ -249,6 +249,13 @@ pub fn run(
     write(&mut context.pending, &ensembles)?;
     context.pending.write_rows(SCAN_ERRORS, &errors)?;
     let mut warnings = material.oddities();
+    if surfaces.is_empty() && !parameters.field_area_fractions.is_empty() {
+        warnings.push(
+            "bem.field_area_fractions does nothing: there is no profile; fields of areal surfaces are those of \
+             areal.field_area_fractions"
+                .into(),
+        );
+    }
     warnings.extend(material.extrapolations(excited(parameters, &surfaces)));
     Ok(warnings)
 }

@@ -84,7 +84,8 @@ impl Scans {
     /// # Errors
     /// Those of the files.
     pub fn read(parameters: &Bem, surfaces: &[Surface], run: &RunView) -> Result<Self, StageError> {
-        let replicates = if parameters.estimate_scan_error && run.has(REPLICATES)? {
+        let sines = surfaces.iter().any(|surface| surface.kind.method == Method::Sines);
+        let replicates = if sines && parameters.estimate_scan_error && run.has(REPLICATES)? {
             replicates(surfaces, &run.rows(REPLICATES)?)
         } else {
             Vec::new()

@@ -4,18 +4,20 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `maps` | maps over the plane: parameters of ISO 25178-2, correlation over direction, spectrum, anisotropy |
-//! | `rows` | the tables of the stage |
+//! | `map_rows` | the tables of maps |
+//! | `rows` | the tables of lines |
 //! | `spectrum` | the spectrum and what follows from it: bins, the isotropic spectrum, Hurst exponents, the check against the correlation |
 //! | `standards` | parameters of the standards: profile parameters, mean profile depth, texture levels |
 //! | `warnings` | what a user is told where numbers are left out |
 
+mod map_rows;
 mod maps;
 mod rows;
 mod spectrum;
 mod standards;
 mod warnings;
 
-pub use maps::{
+pub use map_rows::{
     AREAL_AVERAGES, AREAL_CORRELATION, AREAL_DIRECTIONS, AREAL_PARAMETERS, AREAL_SPECTRUM,
     ArealCorrelationRow, ArealDirectionRow, ArealParametersRow, ArealSpectrumRow,
 };
@@ -68,11 +70,20 @@ static CONTRACT: Contract = Contract {
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let chain = request.chain()?;
     chain.ingest?;
-    let maps = chain.has_maps();
+    let (lines, maps) = (chain.has_lines(), chain.has_maps());
     let run = move |inputs: &Inputs, context: &mut Context| {
-        run(chain.characterise, maps, &inputs.results, context)
+        let (parameters, results) = (chain.characterise, &inputs.results);
+        let mut warnings = Vec::new();
+        if lines {
+            warnings.extend(of_lines(parameters, results, context)?);
+        }
+        if maps {
+            context.check_interrupt()?;
+            warnings.extend(of_maps(parameters, results, context)?);
+        }
+        Ok(warnings)
     };
-    let planned = Planned::new(json!(chain.characterise), run).reading(SCANS);
+    let planned = Planned::new(json!(chain.characterise), run).reading_if(lines, SCANS);
     Some(planned.reading_if(maps, MAPS))
 }
 
@@ -224,7 +235,7 @@ fn require_ascending(
 
 /// Metadata of [`CORRELATION`]: length of the shortest window in millimetres.
 pub const WINDOW_LENGTH_KEY: &str = "window_length_mm";
-/// Metadata of [`CORRELATION`] and [`SPECTRUM`]: shortest wavelength in millimetres that the
+/// Metadata of [`CORRELATION`], [`SPECTRUM`] and, of maps, [`AREAL_PARAMETERS`]: shortest wavelength in millimetres that the
 /// instrument and its spacing show as it is.
 pub const RELIABLE_KEY: &str = "shortest_reliable_wavelength_mm";
 
@@ -238,13 +249,35 @@ pub fn length_in(metadata: &Metadata, key: &'static str) -> Result<Option<f64>, 
         |text: &String| text.parse().map_err(|_| StageError::Metadata { key, value: text.clone() });
     text.map(number).transpose()
 }
-/// Characterises the windows of the run and writes the results; returns warnings.
+
+/// Characterises the windows of maps and writes the results; returns warnings.
+///
+/// # Errors
+/// [`StageError::Gap`]. A map that cannot be characterised is left out with a warning.
+fn of_maps(
+    parameters: &Characterise,
+    run: &RunView,
+    context: &mut Context,
+) -> Result<Vec<String>, StageError> {
+    let maps = read_maps(run)?;
+    let reliable = maps::shortest_reliable_wavelength(parameters.probe(), &maps);
+    let tables = maps::tables(parameters, maps)?;
+    let metadata = Metadata::from([(RELIABLE_KEY.to_owned(), reliable.m_to_mm().to_string())]);
+    let pending = &mut context.pending;
+    pending.write_table(AREAL_PARAMETERS, &tables.parameters, &metadata)?;
+    pending.write_rows(AREAL_AVERAGES, &tables.averages)?;
+    pending.write_rows(AREAL_CORRELATION, &tables.correlation)?;
+    pending.write_rows(AREAL_SPECTRUM, &tables.spectrum)?;
+    pending.write_rows(AREAL_DIRECTIONS, &tables.directions)?;
+    Ok(tables.warnings)
+}
+
+/// Characterises the windows of lines and writes the results; returns warnings.
 ///
 /// # Errors
 /// [`StageError`]: a window without heights. What cannot be fitted is left out with a warning.
-pub fn run(
+fn of_lines(
     parameters: &Characterise,
-    maps: bool,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
@@ -300,16 +333,6 @@ pub fn run(
         spectrum::agreement_rows(&mean_spectrum, &average, reliable, parameters.lags_per_decade);
     context.pending.write_table(AGREEMENT, &rows, &metadata)?;
     warnings.extend(missing.into_iter().chain(apart));
-    if maps {
-        context.check_interrupt()?;
-        let tables = maps::tables(parameters, read_maps(run)?)?;
-        context.pending.write_rows(AREAL_PARAMETERS, &tables.parameters)?;
-        context.pending.write_rows(AREAL_AVERAGES, &tables.averages)?;
-        context.pending.write_rows(AREAL_CORRELATION, &tables.correlation)?;
-        context.pending.write_rows(AREAL_SPECTRUM, &tables.spectrum)?;
-        context.pending.write_rows(AREAL_DIRECTIONS, &tables.directions)?;
-        warnings.extend(tables.warnings);
-    }
     Ok(warnings)
 }
 

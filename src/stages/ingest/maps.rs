@@ -8,7 +8,10 @@ use crate::artifact::{
 use crate::scans::file::{Grid, ScanFile as Heights};
 use crate::stages::StageError;
 use crate::surface::HeightMap;
-use crate::surface::map::condition::{MapReport, MapWindowReport, condition_map};
+use crate::surface::map::condition::{
+    MapConditioningError, MapReport, MapWindowReport, condition_map,
+};
+use crate::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -99,15 +102,20 @@ pub fn maps_schema() -> ArraysSchema {
     }
 }
 
-/// Windows of a map, and what became of it.
-pub(super) type ConditionedMap = (Vec<HeightMap>, MapReport);
+/// What became of a map that is kept.
+pub(super) enum KeptMap {
+    /// Its windows, and what was done to it.
+    Windows(Vec<HeightMap>, Box<MapReport>),
+    /// It is smaller than a window, or has none that is kept: the other maps do without it. Its row says why.
+    LeftOut(Box<MapRow>),
+}
 
-/// The windows of the map that a file holds, if the recipe keeps maps and the file is one.
+/// The map that a file holds, if the recipe keeps maps and the file is one.
 pub(super) fn kept(
     ingest: &Ingest,
     file: &ScanFile,
     scan: &Heights,
-) -> Result<Option<ConditionedMap>, StageError> {
+) -> Result<Option<KeptMap>, StageError> {
     let (Some(conditioning), Grid::Map { columns, rows, spacing_x, spacing_y }) =
         (&ingest.maps, scan.grid)
     else {
@@ -119,7 +127,37 @@ pub(super) fn kept(
         spacing: [spacing_x, spacing_y],
         heights: scan.heights.clone(),
     };
-    Ok(Some(condition_map(&map, conditioning)?))
+    match condition_map(&map, conditioning) {
+        Ok((windows, report)) => Ok(Some(KeptMap::Windows(windows, Box::new(report)))),
+        Err(
+            reason @ (MapConditioningError::TooSmall { .. }
+            | MapConditioningError::NothingLeft { .. }),
+        ) => Ok(Some(KeptMap::LeftOut(Box::new(left_out_row(&map, &reason))))),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The row of a map that has no window.
+fn left_out_row(map: &HeightMap, reason: &MapConditioningError) -> MapRow {
+    MapRow {
+        window: map.name.clone(),
+        map: map.name.clone(),
+        points_x: map.points[0] as u64,
+        points_y: map.points[1] as u64,
+        points_missing: map.missing() as u64,
+        spikes: 0,
+        jumped_rows: 0,
+        jumped_columns: 0,
+        spacing_x_um: map.spacing[0].m_to_um(),
+        spacing_y_um: map.spacing[1].m_to_um(),
+        tilt_x: None,
+        tilt_y: None,
+        origin_x_mm: 0.0,
+        origin_y_mm: 0.0,
+        missing_share: map.missing() as f64 / map.heights.len() as f64,
+        form_rms_mm: None,
+        rejected: Some(reason.to_string()),
+    }
 }
 
 pub(super) fn map_rows(report: &MapReport) -> Vec<MapRow> {
@@ -160,19 +198,53 @@ pub(super) fn dataset(window: HeightMap, file: &ScanFile) -> ArrayDataset {
 /// Reads the windows of the maps of a run.
 ///
 /// # Errors
-/// Those of the store.
+/// Those of the store; [`StageError::MapWindow`] for one that is not as it was written.
 pub fn read_maps(run: &RunView) -> Result<Vec<HeightMap>, StageError> {
-    // The schema version promises the attributes.
-    let number = |dataset: &ArrayDataset, key: &str| match dataset.attributes.get(key) {
-        Some(Attribute::Float(value)) => *value,
-        Some(Attribute::Integer(value)) => *value as f64,
-        _ => f64::NAN,
+    run.read_arrays(MAPS)?.into_iter().map(map_of).collect()
+}
+
+fn map_of(dataset: ArrayDataset) -> Result<HeightMap, StageError> {
+    let ArrayDataset { name, attributes, values, .. } = dataset;
+    let damaged = |key: &str| StageError::MapWindow { name: name.clone(), key: key.to_owned() };
+    let points = |key: &str| match attributes.get(key) {
+        Some(Attribute::Integer(value)) => usize::try_from(*value).map_err(|_| damaged(key)),
+        _ => Err(damaged(key)),
     };
-    let map = |dataset: ArrayDataset| HeightMap {
-        points: ["points_x", "points_y"].map(|key| number(&dataset, key) as usize),
-        spacing: ["spacing_x_m", "spacing_y_m"].map(|key| number(&dataset, key)),
-        name: dataset.name,
-        heights: dataset.values,
+    let spacing = |key: &str| match attributes.get(key) {
+        Some(Attribute::Float(value)) if *value > 0.0 => Ok(*value),
+        _ => Err(damaged(key)),
     };
-    Ok(run.read_arrays(MAPS)?.into_iter().map(map).collect())
+    let points = [points("points_x")?, points("points_y")?];
+    let spacing = [spacing("spacing_x_m")?, spacing("spacing_y_m")?];
+    if points[0].checked_mul(points[1]) != Some(values.len()) {
+        return Err(damaged("points_x, points_y"));
+    }
+    Ok(HeightMap { points, spacing, name, heights: values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_reads_back_as_it_was_written_or_is_refused() {
+        let map = HeightMap {
+            name: "map/000".into(),
+            points: [3, 2],
+            spacing: [5e-5, 1e-4],
+            heights: (0..6).map(f64::from).collect(),
+        };
+        let digest = crate::artifact::Digest::of_bytes(b"a map");
+        let file = ScanFile { path: "map.sdf".into(), name: "map".into(), digest };
+        let written = dataset(map.clone(), &file);
+        assert_eq!(map_of(written.clone()).unwrap(), map);
+        for key in ["points_x", "points_y", "spacing_x_m", "spacing_y_m"] {
+            let mut without = written.clone();
+            without.attributes.remove(key);
+            let message = map_of(without).unwrap_err().to_string();
+            assert!(message.contains("map/000") && message.contains(key), "{message}");
+        }
+        let short = ArrayDataset { values: vec![0.0; 5], ..written };
+        assert!(map_of(short).unwrap_err().to_string().contains("points_x, points_y"));
+    }
 }

@@ -7,6 +7,7 @@
 //! | `files` | the scan files of a recipe: what is at its paths, with digests |
 //! | `maps` | maps that are kept beside their lines |
 //! | `picture` | pictures of the faults of a scan, in SVG |
+//! | `read` | from a scan file to its windows |
 //! | `rows` | the tables of the stage |
 //! | `warnings` | what a user is told of the scans |
 
@@ -15,6 +16,7 @@ mod faults;
 mod files;
 mod maps;
 mod picture;
+mod read;
 mod rows;
 mod warnings;
 
@@ -26,18 +28,18 @@ pub use picture::fault_figure;
 
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::{Stage, StageError};
-use crate::artifact::{ArrayDataset, Attribute, Digesting, RunView, Storage};
+use crate::artifact::{ArrayDataset, Attribute, RunView, Storage};
 use crate::requirement::{InvalidRecipe, require};
-use crate::scans::file::{CHANNELS, Format, Grid, MapLines, is_instrument, open_channel};
-use crate::scans::spreadsheet::is_workbook;
-use crate::scans::text_shape::TextShape;
-use crate::scans::{Described, FileError, FileProblem, Source, TextFormat, read_source};
+use crate::scans::TextFormat;
+use crate::scans::file::MapLines;
 use crate::surface::map::condition::MapConditioning;
-use crate::surface::{Conditioning, ConditioningReport, LineScan, RawScan, condition};
+use crate::surface::{Conditioning, ConditioningReport, LineScan};
 use crate::units::Units;
 use faults::fault_rows;
+use maps::KeptMap;
 use picture::write_pictures;
 use rayon::prelude::*;
+use read::{ReadFile, read_and_condition};
 pub use rows::{REPORT, SCANS, ScanReportRow, WINDOWS, WindowRow, scans_schema, schemas};
 use rows::{report_row, window_rows};
 use schemars::JsonSchema;
@@ -67,8 +69,22 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     if let Value::Object(keys) = &mut parameters {
         keys.remove("scans");
     }
-    let run = move |_: &Inputs, context: &mut Context| run(ingest, &request.scans, context);
+    let lines = if request.chain()?.has_lines() { Lines::Taken } else { Lines::None };
+    if lines == Lines::None {
+        parameters["lines"] = json!("none");
+    }
+    let run = move |_: &Inputs, context: &mut Context| run(ingest, lines, &request.scans, context);
     Some(Planned::new(parameters, run).with_inputs(inputs(&request.scans)))
+}
+
+/// Whether line scans are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lines {
+    /// As everywhere but where maps stand alone.
+    Taken,
+    /// Maps stand alone ([`Chain::has_lines`](super::Chain::has_lines)): lines are looked at for faults that a user should
+    /// be told of, and no windows are made of them.
+    None,
 }
 
 /// Section `[ingest]` of a recipe.
@@ -147,245 +163,132 @@ fn is_twelve(pictures: &usize) -> bool {
     *pictures == twelve_pictures()
 }
 
-/// Windows of a scan, and what became of it.
-type Conditioned = (Vec<LineScan>, ConditioningReport);
-
-/// The line scans of a file, and what is to be told of it.
-struct ReadFile<T> {
-    scans: Vec<T>,
-    /// The map that the file holds, where maps are kept.
-    map: Option<maps::ConditionedMap>,
-    /// Whether it is text and not the file of an instrument.
-    is_text: bool,
-    /// Where the description contradicts the file.
-    contradictions: Vec<String>,
-    /// The channels of heights of an ERD file that has several.
-    channels: Option<String>,
-    /// Whether it is an ERD file.
-    is_erd: bool,
-    /// A height that seems to stand for missing ones, in words.
-    repeated: Option<String>,
-    /// A stretch on which the sensor seems to have stood still, in words.
-    stuck: Option<String>,
-    /// Heights that are smoother than those of a road, in words.
-    smooth: Option<String>,
-}
-
-/// Reads and conditions the scan files and writes the results; returns warnings.
+/// Reads and conditions the scan files and writes the results; returns warnings. Lines of maps that are kept which cannot be
+/// conditioned, and maps without a window, are left out with a warning.
 ///
 /// # Errors
-/// The first file, in their order, that cannot be read or conditioned.
+/// The first file, in their order, that cannot be read or conditioned; [`StageError::NoMapLeft`].
 pub fn run(
     ingest: &Ingest,
+    lines: Lines,
     files: &[ScanFile],
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let done = std::sync::atomic::AtomicU64::new(0);
-    // Collected first and judged then: a parallel search for an error finds any.
-    let read: Vec<Result<ReadFile<Conditioned>, StageError>> = files
-        .par_iter()
-        .map(|file| {
-            context.check_interrupt()?;
-            let read = read_and_condition(ingest, file)?;
-            let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            (context.watch.progress)(count, files.len() as u64);
-            Ok(read)
-        })
-        .collect();
-    let mut read: Vec<_> = read.into_iter().collect::<Result<_, _>>()?;
+    let mut read = read_all(ingest, lines, files, context)?;
     check_equal_grids(read.iter().flat_map(|file| &file.scans).flat_map(|(windows, _)| windows))?;
     let scans = read.iter_mut().flat_map(|file| &mut file.scans);
     share_spacing(&mut scans.flat_map(|(windows, _)| windows).collect::<Vec<_>>());
     let mut warnings = warnings::of_description(ingest, files, &read);
-    let (mut datasets, mut reports) = (Vec::new(), Vec::new());
-    let (mut map_datasets, mut map_reports) = (Vec::new(), Vec::new());
+    warnings.extend(warnings::of_lines(ingest, lines, files, &read));
+    require_lines(lines, &mut read)?;
+    let mut found = Found::default();
     for (file, read) in files.iter().zip(read) {
-        if let Some((windows, report)) = read.map {
-            map_datasets.extend(windows.into_iter().map(|window| maps::dataset(window, file)));
-            map_reports.push(report);
-        }
-        for (windows, report) in read.scans {
-            datasets.extend(windows.into_iter().map(|window| dataset(window, file)));
-            reports.push(report);
-        }
+        found.add(file, read);
     }
-    let reports: Vec<&ConditioningReport> = reports.iter().collect();
-    let pending = &mut context.pending;
-    pending.write_arrays(SCANS, Storage::Plain, &datasets)?;
-    let scans: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
-    pending.write_rows(REPORT, &scans)?;
-    let of_lines = reports.iter().flat_map(|report| fault_rows(&report.scan, &report.faults));
-    let of_maps = map_reports.iter().flat_map(|report| fault_rows(&report.map, &report.faults));
-    let faults: Vec<_> = of_lines.chain(of_maps).collect();
-    pending.write_rows(FAULTS, &faults)?;
-    let windows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
-    pending.write_rows(WINDOWS, &windows)?;
-    let map_windows: Vec<_> = map_reports.iter().flat_map(maps::map_rows).collect();
-    if ingest.maps.is_some() {
-        if map_reports.is_empty() {
-            return Err(StageError::NoMaps);
-        }
-        pending.write_arrays(MAPS, Storage::Plain, &map_datasets)?;
-        pending.write_rows(MAP_WINDOWS, &map_windows)?;
-    }
-    let pictures = write_pictures(&reports, ingest.fault_pictures, pending)?;
-    let document = cleaning_markdown(&scans, &faults, &windows, &map_windows, &pictures);
-    pending.write_document(CLEANING_FILE, &document)?;
-    warnings.extend(warnings::of_scans(&reports));
-    if let Some(conditioning) = &ingest.maps {
-        warnings.extend(warnings::of_maps(&map_windows, conditioning.form));
-    }
+    warnings.extend(found.write(ingest, lines, context)?);
     Ok(warnings)
 }
 
-/// Conditions the line scans of a file while it is read; nothing of it counts unless all that was
-/// read is what was digested before.
-fn read_and_condition(
+/// Reads and conditions the files side by side.
+fn read_all(
     ingest: &Ingest,
-    file: &ScanFile,
-) -> Result<ReadFile<Conditioned>, StageError> {
-    let io = |source| StageError::ScanIo { path: file.path.clone(), source };
-    let opened = std::fs::File::open(&file.path).map_err(io)?;
-    let length = opened.metadata().map_err(io)?.len();
-    let mut reader = Digesting::new(opened);
-    let source = Source::new(&mut reader, length).map_err(io)?;
-    let read = read_scans(ingest, file, source);
-    if reader.finish().map_err(io)? != file.digest {
-        return Err(StageError::ScanChanged { path: file.path.clone() });
-    }
-    read
+    lines: Lines,
+    files: &[ScanFile],
+    context: &Context,
+) -> Result<Vec<ReadFile>, StageError> {
+    let done = std::sync::atomic::AtomicU64::new(0);
+    let watch = context.watch;
+    // Collected first and judged then: a parallel search for an error finds any.
+    let read: Vec<Result<ReadFile, StageError>> = files
+        .par_iter()
+        .map(|file| {
+            watch.check_interrupt()?;
+            let read = read_and_condition(ingest, lines, file)?;
+            let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            (watch.progress)(count, files.len() as u64);
+            Ok(read)
+        })
+        .collect();
+    read.into_iter().collect()
 }
 
-/// The line scans of a file: one, or the chosen lines of a height map, each conditioned as soon
-/// as it is complete.
-fn read_scans(
-    ingest: &Ingest,
-    file: &ScanFile,
-    source: Source<'_>,
-) -> Result<ReadFile<Conditioned>, StageError> {
-    /// Enough for the names of the columns and some points.
-    const START: usize = 1 << 16;
-    let name = file.path.display().to_string();
-    let file_error = |problem| Box::new(FileError { file: name.clone(), problem }).into();
-    let source = source
-        .with_directory()
-        .map_err(|source| StageError::ScanIo { path: file.path.clone(), source })?;
-    if is_instrument(source.start()) {
-        return read_instrument(ingest, file, source).map_err(|failure| match failure {
-            Failure::File(problem) => file_error(problem),
-            Failure::Stage(error) => *error,
-        });
-    }
-    let Some(format) = &ingest.text else {
-        return Err(StageError::NoTextFormat { path: file.path.clone() });
-    };
-    // The directory of a workbook is at its end.
-    let start = source.start();
-    let start = if is_workbook(start) { start } else { &start[..start.len().min(START)] };
-    let contradictions = TextShape::of(start).map(|shape| shape.contradictions(format));
-    let contradictions = contradictions.unwrap_or_default();
-    let mut map = None;
-    let scans = match read_source(&name, source, format)? {
-        Described::Line(scan) => vec![RawScan { name: file.name.clone(), ..scan }],
-        Described::Map(heights) => {
-            let lines = chosen_lines(ingest, file, heights.grid)?;
-            map = maps::kept(ingest, file, &heights)?;
-            heights.line_scans(&file.name, lines, ingest.map_line_step).map_err(file_error)?
-        }
-    };
-    let condition = |scan| Ok(condition(scan, &ingest.conditioning)?);
-    Ok(ReadFile {
-        repeated: scans.iter().find_map(|scan| warnings::repeated(scan, Some(format))),
-        stuck: scans.iter().find_map(warnings::stuck),
-        smooth: scans.iter().find_map(warnings::smooth),
-        scans: scans.iter().map(condition).collect::<Result<_, StageError>>()?,
-        map,
-        is_text: true,
-        contradictions,
-        channels: None,
-        is_erd: false,
-    })
-}
-
-/// Which lines of a map become scans; a profile is one.
-fn chosen_lines(ingest: &Ingest, file: &ScanFile, grid: Grid) -> Result<MapLines, StageError> {
-    match (grid, ingest.map_lines) {
-        (_, Some(lines)) => Ok(lines),
-        (Grid::Profile { .. }, None) => Ok(MapLines::Rows),
-        (Grid::Map { .. }, None) if ingest.maps.is_some() => Ok(MapLines::Rows),
-        (Grid::Map { columns, rows, .. }, None) => {
-            Err(StageError::MapLines { path: file.path.clone(), rows, columns })
-        }
+/// Fails where lines are needed and all of them were left out.
+fn require_lines(lines: Lines, read: &mut [ReadFile]) -> Result<(), StageError> {
+    let none = read.iter().all(|file| file.scans.is_empty());
+    let first = read.iter_mut().find(|file| !file.left_out.is_empty());
+    match first {
+        Some(file) if none && lines == Lines::Taken => Err(file.left_out.remove(0).reason.into()),
+        _ => Ok(()),
     }
 }
 
-/// Why the lines of an instrument file are not there.
-enum Failure {
-    File(FileProblem),
-    Stage(Box<StageError>),
+/// What all files hold.
+#[derive(Default)]
+struct Found {
+    scans: Vec<ArrayDataset>,
+    reports: Vec<ConditioningReport>,
+    maps: Vec<ArrayDataset>,
+    map_windows: Vec<MapRow>,
+    map_faults: Vec<FaultRow>,
+    /// The rows of maps without a window.
+    maps_left_out: Vec<MapRow>,
 }
 
-impl From<FileProblem> for Failure {
-    fn from(problem: FileProblem) -> Self {
-        Self::File(problem)
+impl Found {
+    fn add(&mut self, file: &ScanFile, read: ReadFile) {
+        match read.map {
+            Some(KeptMap::Windows(windows, report)) => {
+                self.maps.extend(windows.into_iter().map(|window| maps::dataset(window, file)));
+                self.map_windows.extend(maps::map_rows(&report));
+                self.map_faults.extend(fault_rows(&report.map, &report.faults));
+            }
+            Some(KeptMap::LeftOut(row)) => self.maps_left_out.push(*row),
+            None => {}
+        }
+        for (windows, report) in read.scans {
+            self.scans.extend(windows.into_iter().map(|window| dataset(window, file)));
+            self.reports.push(report);
+        }
     }
-}
 
-impl<E: Into<StageError>> From<Box<E>> for Failure {
-    fn from(error: Box<E>) -> Self {
-        Self::Stage(Box::new((*error).into()))
-    }
-}
-
-fn read_instrument(
-    ingest: &Ingest,
-    file: &ScanFile,
-    source: Source<'_>,
-) -> Result<ReadFile<Conditioned>, Failure> {
-    let mut read = ReadFile {
-        scans: Vec::new(),
-        map: None,
-        is_text: false,
-        contradictions: Vec::new(),
-        channels: None,
-        is_erd: Format::detect(source.start()) == Some(Format::Erd),
-        repeated: None,
-        stuck: None,
-        smooth: None,
-    };
-    let Some(scan) = open_channel(source, ingest.erd_channel)? else { return Ok(read) };
-    let said = |name: &str| scan.instrument.iter().find(|(key, _)| key == name);
-    read.channels = said(CHANNELS).map(|(_, channels)| channels.clone());
-    let lines = chosen_lines(ingest, file, scan.grid).map_err(Box::new)?;
-    let mut each = |mut line: RawScan| {
-        if ingest.invert_instrument_heights {
-            line.heights.iter_mut().for_each(|height| *height = -*height);
+    /// Writes the results; returns warnings.
+    fn write(
+        self,
+        ingest: &Ingest,
+        lines: Lines,
+        context: &mut Context,
+    ) -> Result<Vec<String>, StageError> {
+        if ingest.maps.is_some() && self.maps.is_empty() {
+            let reasons = self.maps_left_out.into_iter().filter_map(|row| row.rejected).collect();
+            return Err(StageError::NoMapLeft { reasons });
         }
-        if read.repeated.is_none() {
-            read.repeated = warnings::repeated(&line, None);
+        let reports: Vec<&ConditioningReport> = self.reports.iter().collect();
+        let pending = &mut context.pending;
+        if lines == Lines::Taken {
+            pending.write_arrays(SCANS, Storage::Plain, &self.scans)?;
         }
-        if read.stuck.is_none() {
-            read.stuck = warnings::stuck(&line);
+        let scans: Vec<_> = reports.iter().map(|report| report_row(report)).collect();
+        pending.write_rows(REPORT, &scans)?;
+        let of_lines = reports.iter().flat_map(|report| fault_rows(&report.scan, &report.faults));
+        let faults: Vec<_> = of_lines.chain(self.map_faults).collect();
+        pending.write_rows(FAULTS, &faults)?;
+        let windows: Vec<_> = reports.iter().flat_map(|report| window_rows(report)).collect();
+        pending.write_rows(WINDOWS, &windows)?;
+        let all_maps = [&self.map_windows[..], &self.maps_left_out].concat();
+        if ingest.maps.is_some() {
+            pending.write_arrays(MAPS, Storage::Plain, &self.maps)?;
+            pending.write_rows(MAP_WINDOWS, &all_maps)?;
         }
-        if read.smooth.is_none() {
-            read.smooth = warnings::smooth(&line);
+        let pictures = write_pictures(&reports, ingest.fault_pictures, pending)?;
+        let document = cleaning_markdown(&scans, &faults, &windows, &all_maps, &pictures);
+        pending.write_document(CLEANING_FILE, &document)?;
+        let mut warnings = warnings::of_scans(&reports);
+        if let Some(conditioning) = &ingest.maps {
+            warnings.extend(warnings::of_maps(&self.map_windows, conditioning.form));
+            warnings.extend(warnings::maps_left_out(&self.maps_left_out, &self.map_windows));
         }
-        read.scans.push(condition(&line, &ingest.conditioning).map_err(Box::new)?);
-        Ok::<(), Failure>(())
-    };
-    if ingest.maps.is_none() {
-        scan.lines(&file.name, lines, ingest.map_line_step, &mut each)?;
-        return Ok(read);
+        Ok(warnings)
     }
-    let mut whole = scan.whole()?;
-    for line in whole.line_scans(&file.name, lines, ingest.map_line_step)? {
-        each(line)?;
-    }
-    if ingest.invert_instrument_heights {
-        whole.heights.iter_mut().for_each(|height| *height = -*height);
-    }
-    read.map = maps::kept(ingest, file, &whole).map_err(Box::new)?;
-    Ok(read)
 }
 
 fn check_equal_grids<'a>(

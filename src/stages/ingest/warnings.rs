@@ -1,18 +1,20 @@
 //! What a user is told of the scans.
 
-use super::{Conditioned, Ingest, MapRow, ReadFile, ScanFile};
+use super::read::LeftOutLine;
+use super::{Ingest, Lines, MapRow, ReadFile, ScanFile};
 use crate::scans::TextFormat;
 use crate::scans::description::LengthUnit;
 use crate::scans::text_shape::{repeated_inside, unit_name};
+use crate::stages::keys;
 use crate::surface::map::form::FormOfMap;
-use crate::surface::{ConditioningReport, RawScan};
+use crate::surface::{Conditioning, ConditioningReport, RawScan};
 use crate::units::Units;
 
 /// Where the description does not fit the files.
 pub(super) fn of_description(
     ingest: &Ingest,
     files: &[ScanFile],
-    read: &[ReadFile<Conditioned>],
+    read: &[ReadFile],
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     if ingest.text.is_some() && read.iter().all(|file| !file.is_text) {
@@ -50,8 +52,84 @@ pub(super) fn of_description(
     warnings
 }
 
+/// What became of the lines of maps that are kept.
+pub(super) fn of_lines(
+    ingest: &Ingest,
+    lines: Lines,
+    files: &[ScanFile],
+    read: &[ReadFile],
+) -> Vec<String> {
+    if lines == Lines::None {
+        return maps_alone(ingest, files, read);
+    }
+    let left_out: Vec<(&ScanFile, &LeftOutLine)> = files
+        .iter()
+        .zip(read)
+        .flat_map(|(file, read)| read.left_out.iter().map(move |line| (file, line)))
+        .collect();
+    let Some((file, first)) = left_out.first() else { return Vec::new() };
+    let kept: usize = read.iter().map(|read| read.scans.len()).sum();
+    let others: Vec<&str> = left_out[1..].iter().map(|(_, line)| line.line.as_str()).collect();
+    let more = match others.len() {
+        0 => String::new(),
+        _ if others.len() <= NAMED => format!("; the others are {}", others.join(", ")),
+        count => {
+            format!("; the others are {} and {} more", others[..NAMED].join(", "), count - NAMED)
+        }
+    };
+    vec![format!(
+        "{} of {} lines of height maps are left out: the first, {} of {}, because {}{}{more}",
+        left_out.len(),
+        kept + left_out.len(),
+        first.line,
+        file.path.display(),
+        first.reason,
+        keys::of_conditioning(&first.reason)
+    )]
+}
+
+/// Lines that are left out and named.
+const NAMED: usize = 8;
+
+/// That no line scans are taken, what does nothing then, and which files are no maps.
+fn maps_alone(ingest: &Ingest, files: &[ScanFile], read: &[ReadFile]) -> Vec<String> {
+    let set = ingest.conditioning != Conditioning::default();
+    let idle = if set { " and [ingest.conditioning] does nothing" } else { "" };
+    let mut warnings = vec![format!(
+        "the maps stand alone (realise.profiles = false): no line scans are taken of them, there are no tables of lines, and          the stage approximate is left out{idle}"
+    )];
+    let lines: Vec<&ScanFile> = files
+        .iter()
+        .zip(read)
+        .filter_map(|(file, read)| read.map.is_none().then_some(file))
+        .collect();
+    if let Some(first) = lines.first() {
+        warnings.push(format!(
+            "{} of {} files are no height maps and are left out, the first {}: set realise.profiles = true for their lines",
+            lines.len(),
+            files.len(),
+            first.path.display()
+        ));
+    }
+    warnings
+}
+
+/// Maps that have no window.
+pub(super) fn maps_left_out(left_out: &[MapRow], kept: &[MapRow]) -> Option<String> {
+    let kept = kept.chunk_by(|a, b| a.map == b.map).count();
+    let reasons: Vec<&str> = left_out.iter().filter_map(|row| row.rejected.as_deref()).collect();
+    (!reasons.is_empty()).then(|| {
+        format!(
+            "{} of {} height maps are left out: {}",
+            left_out.len(),
+            left_out.len() + kept,
+            reasons.join("; ")
+        )
+    })
+}
+
 /// Channels of ERD files of which one was taken without being asked for, or that no file has.
-fn channels(ingest: &Ingest, files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+fn channels(ingest: &Ingest, files: &[ScanFile], read: &[ReadFile]) -> Option<String> {
     if ingest.erd_channel.is_some() {
         let none = read.iter().all(|file| !file.is_erd);
         return none.then(|| "ingest.erd_channel does nothing: no scan is an ERD file".to_owned());
@@ -143,7 +221,7 @@ pub(super) fn smooth(scan: &RawScan) -> Option<String> {
 }
 
 /// Says so where a scan is smoother than any road.
-fn smooth_scans(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+fn smooth_scans(files: &[ScanFile], read: &[ReadFile]) -> Option<String> {
     let found: Vec<_> = files.iter().zip(read).filter(|(_, read)| read.smooth.is_some()).collect();
     let (file, read) = found.first()?;
     Some(format!(
@@ -157,7 +235,7 @@ fn smooth_scans(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<St
 }
 
 /// Says so where a scan stands still.
-fn stuck_sensors(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+fn stuck_sensors(files: &[ScanFile], read: &[ReadFile]) -> Option<String> {
     let found: Vec<_> = files.iter().zip(read).filter(|(_, read)| read.stuck.is_some()).collect();
     let (file, read) = found.first()?;
     Some(format!(
@@ -186,7 +264,7 @@ fn copies(files: &[ScanFile]) -> Option<String> {
 }
 
 /// Says so where a height is repeated as if it stood for missing ones.
-fn repeated_heights(files: &[ScanFile], read: &[ReadFile<Conditioned>]) -> Option<String> {
+fn repeated_heights(files: &[ScanFile], read: &[ReadFile]) -> Option<String> {
     let found: Vec<_> =
         files.iter().zip(read).filter(|(_, read)| read.repeated.is_some()).collect();
     let (file, read) = found.first()?;

@@ -1,4 +1,4 @@
-//! Areal surfaces: the windows of maps, surfaces with their spectrum, and isotropic ones with the spectrum of lines.
+//! Areal surfaces: the windows of maps, and surfaces with their spectrum.
 
 use super::profiles::LONGEST_GAP;
 use super::{Method, Realise, SurfaceKind};
@@ -7,11 +7,10 @@ use crate::artifact::{
     Row, RunView, Table,
 };
 use crate::stages::StageError;
-use crate::stages::characterise::IsotropicRow;
 use crate::surface::map::gaps::{GapError, fill_gaps};
 use crate::surface::map::periodic::blended_length;
-use crate::surface::map::phases::{isotropic_map, matched_map, random_phase_map};
-use crate::surface::{Closure, HeightMap, LineScan, PeriodicMap};
+use crate::surface::map::phases::{matched_map, random_phase_map};
+use crate::surface::{Closure, HeightMap, PeriodicMap, PeriodicMapError};
 use crate::units::Units;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -126,10 +125,10 @@ struct Window {
     map: PeriodicMap,
 }
 
-/// The areal surfaces of all methods of windows. Maps with a gap that is not filled are left out.
+/// The areal surfaces of all methods of windows. Flat maps, and those with a gap that is not filled or of too few waves, are left out.
 ///
 /// # Errors
-/// [`StageError::Gap`] or [`StageError::FlatWindow`] where no map is left; [`StageError::PeriodicMap`].
+/// [`StageError::PeriodicMap`], [`StageError::Gap`] or [`StageError::FlatWindow`] where no map is left.
 pub(super) fn of_maps(
     parameters: &Realise,
     maps: Vec<HeightMap>,
@@ -147,6 +146,7 @@ pub(super) fn of_maps(
             Ok(window) if window.map.is_flat() => left_out.flat.push(window.name),
             Ok(window) => windows.push(window),
             Err(StageError::Gap(gap)) => left_out.gaps.push(gap),
+            Err(StageError::PeriodicMap(reason)) => left_out.unresolved.push(reason),
             Err(error) => return Err(error),
         }
     }
@@ -184,15 +184,20 @@ struct LeftOut {
     gaps: Vec<GapError>,
     /// Names of those without a wave.
     flat: Vec<String>,
+    /// Of too few waves or points.
+    unresolved: Vec<PeriodicMapError>,
 }
 
 impl LeftOut {
     /// Why no window is left.
     fn into_error(self) -> StageError {
+        if let Some(reason) = self.unresolved.into_iter().next() {
+            return StageError::PeriodicMap(reason);
+        }
         match (self.gaps.into_iter().next(), self.flat.into_iter().next()) {
             (Some(gap), _) => StageError::Gap(gap),
             (None, Some(window)) => StageError::FlatWindow { window },
-            (None, None) => StageError::NoMaps,
+            (None, None) => StageError::NoMapLeft { reasons: Vec::new() },
         }
     }
 }
@@ -203,7 +208,8 @@ const MUCH_FILLED: f64 = 0.1;
 const WAVES_IN_SEAM: f64 = 4.0;
 
 fn told(windows: &[Window], left_out: &LeftOut, closure: Closure, shortest: f64) -> Vec<String> {
-    let LeftOut { gaps, flat } = left_out;
+    let LeftOut { gaps, flat, unresolved } = left_out;
+    let total = windows.len() + gaps.len() + flat.len() + unresolved.len();
     let mut warnings = Vec::new();
     let seam = windows.iter().flat_map(|window| window.map.periods).map(blended_length);
     let narrowest = seam.fold(f64::INFINITY, f64::min);
@@ -226,16 +232,21 @@ fn told(windows: &[Window], left_out: &LeftOut, closure: Closure, shortest: f64)
     }
     if let Some(first) = flat.first() {
         warnings.push(format!(
-            "{} of {} maps are flat, and no surfaces: the first is {first}",
-            flat.len(),
-            flat.len() + windows.len() + gaps.len()
+            "{} of {total} maps are flat, and no surfaces: the first is {first}",
+            flat.len()
         ));
     }
     if let Some(first) = gaps.first() {
         warnings.push(format!(
-            "{} of {} maps are no surfaces, because of missing heights: {first} (realise.longest_gap_mm)",
-            gaps.len(),
-            gaps.len() + windows.len()
+            "{} of {total} maps are no surfaces, because of missing heights: {first} (realise.longest_gap_mm)",
+            gaps.len()
+        ));
+    }
+    if let Some(first) = unresolved.first() {
+        warnings.push(format!(
+            "{} of {total} maps are no surfaces, the first because {first} (realise.shortest_wavelength_mm, \
+             ingest.maps.window_length_mm)",
+            unresolved.len()
         ));
     }
     if windows.len() == 1 {
@@ -275,76 +286,7 @@ fn drawn(
     }
 }
 
-/// Shortest waves in the period of an isotropic surface: as many as a map must have, and 16384 points along a side.
-const FEWEST_WAVES: f64 = 4.0;
-const MOST_WAVES: f64 = 8192.0;
-
-/// Isotropic surfaces of random phases whose lines have the averaged spectrum of the line scans.
-///
-/// # Errors
-/// [`StageError::NoIsotropicSpectrum`] where the line scans have none; [`StageError::IsotropicPeriod`].
-pub(super) fn isotropic(
-    parameters: &Realise,
-    windows: &[LineScan],
-    spectrum: &[IsotropicRow],
-    shortest: f64,
-) -> Result<ArealSurfaces, StageError> {
-    let length = windows.first().map_or(0.0, LineScan::length);
-    let period = parameters.isotropic_period_mm.map_or(length, Units::mm_to_m);
-    let waves = period / shortest;
-    if !(FEWEST_WAVES..=MOST_WAVES).contains(&waves) {
-        return Err(StageError::IsotropicPeriod {
-            period_mm: period.m_to_mm(),
-            shortest_mm: shortest.m_to_mm(),
-            fewest: FEWEST_WAVES,
-            most: MOST_WAVES,
-        });
-    }
-    let density = Density::new(spectrum)?;
-    let seed = parameters.seed.unwrap_or_default();
-    let made: Vec<(ArealSurface, ArealRow)> = (1..=parameters.areal_drawn())
-        .into_par_iter()
-        .map(|realisation| {
-            let draw = u64::from(realisation);
-            let map = isotropic_map(|q| density.at(q), period, shortest, seed, draw);
-            let kind = SurfaceKind::of(Method::Isotropic);
-            let surface = ArealSurface { kind, realisation, map };
-            let average = crate::stages::characterise::AVERAGE;
-            let row = row(&surface, average, [0.0, 0.0], None);
-            (surface, row)
-        })
-        .collect();
-    let (surfaces, rows) = made.into_iter().unzip();
-    Ok((surfaces, rows, Vec::new()))
-}
-
-/// A two-dimensional density between the points of a table: a power law from one to the next, and beyond them that of the two
-/// last ones.
-struct Density(Vec<[f64; 2]>);
-
-impl Density {
-    fn new(spectrum: &[IsotropicRow]) -> Result<Self, StageError> {
-        let point = |row: &IsotropicRow| {
-            let positive = |density: &f64| *density > 0.0;
-            let abel = row.abel_density_mm4.filter(positive);
-            let density = abel.or(row.self_affine_density_mm4.filter(positive))?;
-            let q = row.wavenumber_rad_mm.per_mm_to_per_m();
-            Some([q.ln(), density.mm4_to_m4().ln()])
-        };
-        let points: Vec<[f64; 2]> = spectrum.iter().filter_map(point).collect();
-        if points.len() < 2 { Err(StageError::NoIsotropicSpectrum) } else { Ok(Self(points)) }
-    }
-
-    /// In m⁴ at a wavenumber in rad/m.
-    fn at(&self, wavenumber: f64) -> f64 {
-        let q = wavenumber.ln();
-        let right = self.0.partition_point(|point| point[0] < q).clamp(1, self.0.len() - 1);
-        let [[q0, c0], [q1, c1]] = [self.0[right - 1], self.0[right]];
-        (c0 + (c1 - c0) * (q - q0) / (q1 - q0)).exp()
-    }
-}
-
-fn row(
+pub(super) fn row(
     surface: &ArealSurface,
     window: &str,
     [filled, left_out]: [f64; 2],
@@ -456,22 +398,5 @@ mod tests {
         let short = ArrayDataset { values: vec![0.0; 23], ..written };
         let message = surface_of(short).unwrap_err().to_string();
         assert!(message.contains("areal_matched/realisation_3"), "{message}");
-    }
-
-    #[test]
-    fn a_density_is_a_power_law_between_its_points() {
-        let row = |q: f64, abel: Option<f64>| IsotropicRow {
-            wavenumber_rad_mm: q,
-            abel_density_mm4: abel,
-            self_affine_density_mm4: Some(1e-3 * q.powf(-3.0)),
-        };
-        // The Abel inverse where it is positive, the self-affine form elsewhere.
-        let rows = [row(1.0, Some(-1.0)), row(10.0, None), row(100.0, Some(1e-9))];
-        let density = Density::new(&rows).unwrap();
-        for q in [0.5, 1.0, 3.0, 50.0, 300.0] {
-            let expected = 1e-3_f64 * f64::powf(q, -3.0) * 1e-12;
-            approx::assert_relative_eq!(density.at(1e3 * q), expected, max_relative = 1e-10);
-        }
-        assert!(matches!(Density::new(&rows[..1]), Err(StageError::NoIsotropicSpectrum)));
     }
 }

@@ -3,23 +3,28 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | `areal` | areal surfaces: of maps, and isotropic ones of lines |
+//! | `areal` | areal surfaces of maps |
+//! | `isotropic` | isotropic areal surfaces with the spectrum of lines |
 //! | `kind` | how surfaces are made of a road, and what tables call them |
 //! | `profiles` | surfaces of the windows of the scans |
+//! | `section` | the section `[realise]` of a recipe |
+//! | `shortest` | the shortest wavelength of the surfaces of windows |
 
 mod areal;
+mod isotropic;
 mod kind;
 mod profiles;
+mod section;
+mod shortest;
 
 use super::approximate::{ScaleRow, WAVES};
-use super::characterise::ISOTROPIC;
+use super::characterise::{AREAL_PARAMETERS, ISOTROPIC};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::ingest::{MAPS, SCANS, read_maps, read_windows};
 use super::{Stage, StageError};
 use crate::artifact::{Row, RunView, SchemaVersion, Storage, Table};
-use crate::requirement::{InvalidRecipe, require};
 use crate::surface::realisation::random_phases;
-use crate::surface::{Closure, SineScale, Wave};
+use crate::surface::{SineScale, Wave};
 use crate::units::Units;
 pub use areal::{AREAL, AREAL_SURFACES, ArealRow, ArealSurface, areal_schema, read_areal_surfaces};
 pub use kind::{Method, SurfaceKind};
@@ -28,8 +33,10 @@ pub(crate) use profiles::LONGEST_GAP;
 pub(crate) use profiles::rms_slope;
 pub use profiles::{PROFILES, ProfileRow};
 use schemars::JsonSchema;
+pub use section::{Direction, Realise};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use shortest::MapLimit;
 
 /// Revision of this stage: raised when the same parameters give other numbers.
 pub const REVISION: u32 = 3;
@@ -48,211 +55,28 @@ static CONTRACT: Contract = Contract {
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let chain = request.chain()?;
     let (realise, maps) = (chain.realise, chain.has_maps());
-    let run =
-        move |inputs: &Inputs, context: &mut Context| run(realise, maps, &inputs.results, context);
-    let planned = Planned::new(json!(realise), run).reading(WAVES);
+    let mut parameters = json!(realise);
+    let alone = maps && !chain.has_lines();
+    let limit = alone.then(|| MapLimit {
+        shortest_wavelength_mm: chain.approximate.shortest_wavelength_mm,
+        undetermined: chain.approximate.undetermined,
+    });
+    if let Some(limit) = &limit {
+        parameters["approximate"] = json!(limit);
+    }
+    let run = move |inputs: &Inputs, context: &mut Context| {
+        run(realise, maps, limit.as_ref(), &inputs.results, context)
+    };
+    let planned = Planned::new(parameters, run);
     let isotropic = realise.is_isotropic();
     Some(
         planned
+            .reading_if(!alone, WAVES)
+            .reading_if(alone, AREAL_PARAMETERS)
             .reading_if(realise.has_windows() || isotropic, SCANS)
             .reading_if(maps && realise.names_windows(), MAPS)
             .reading_if(isotropic, ISOTROPIC),
     )
-}
-
-/// Section `[realise]` of a recipe.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Realise {
-    /// How surfaces are made of the road, in one way or several: `measured`, every window of the scans made periodic;
-    /// `matched`, the spectrum and the heights of a window with other phases; `random-phase`, its spectrum with random
-    /// phases; `sines`, the fitted sines with random phases; `isotropic`, areal surfaces of random phases whose lines have the
-    /// averaged spectrum of the scans. Where maps are kept (`[ingest.maps]`), the first three make areal surfaces of them too.
-    #[serde(default = "sines_alone", skip_serializing_if = "is_sines_alone")]
-    pub methods: Vec<Method>,
-    /// Whether the line scans make surfaces too where maps are kept.
-    #[serde(default = "yes", skip_serializing_if = "is_yes")]
-    pub profiles: bool,
-    /// Number of areal surfaces that are drawn of each method; that of `realisations`, at most 8, if not set: an areal surface
-    /// has far less scatter than a profile.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub areal_realisations: Option<u32>,
-    /// Period in mm of isotropic surfaces; the length of a window of the scans if not set.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub isotropic_period_mm: Option<f64>,
-    /// Directions in which the rubber slides over `measured` windows: a road is not the same in both.
-    #[serde(default = "forward_alone", skip_serializing_if = "is_forward_alone")]
-    pub directions: Vec<Direction>,
-    /// How a window is made periodic; `mirror` if not set, which makes both directions the same.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub periodic: Option<Closure>,
-    /// Shortest wavelength in mm of the surfaces of windows; that of the fitted sines if not set.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shortest_wavelength_mm: Option<f64>,
-    /// Longest gap in mm that is filled by a straight line; windows with longer ones are left out. Eight shortest
-    /// wavelengths if not set. What was filled stands in the table of the profiles.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub longest_gap_mm: Option<f64>,
-    /// Most windows that are taken, the first ones; all if not set.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub most_windows: Option<u32>,
-    /// Numbers of waves of the approximations to realise, out of `approximate.waves`; for `sines`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub waves: Vec<u32>,
-    /// Number of realisations; the average is over them. `measured` has as many as there are windows. Where the recipe
-    /// has a `tolerance`, their number follows from it and not from this key, which may then be left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub realisations: Option<u32>,
-    /// Most realisations that a `tolerance` may take, 1000 if not set.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub most_realisations: Option<u32>,
-    /// Seed of the phases: same seed, same surfaces, on every machine. Left out beside `sweep.seeds`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub seed: Option<u64>,
-}
-
-impl Realise {
-    pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
-        self.check_methods()?;
-        let keys = [
-            ("realise.realisations", self.realisations),
-            ("realise.most_realisations", self.most_realisations),
-            ("realise.areal_realisations", self.areal_realisations),
-        ];
-        for (key, count) in keys.into_iter().filter_map(|(key, count)| Some((key, count?))) {
-            require((1..=100_000).contains(&count), key, count, "1 to 100000")?;
-        }
-        let (lines, maps) = (self.drawn() > 0, self.areal_drawn() > 0);
-        let is_drawn = |method: &Method| match method {
-            Method::Measured => true,
-            Method::Sines => lines,
-            Method::Isotropic => maps,
-            _ => lines || maps && !self.profiles,
-        };
-        if !self.methods.iter().all(is_drawn) {
-            let advice = "give a number of surfaces, or a `tolerance` that it follows from";
-            return Err(InvalidRecipe::Missing { key: "realise.realisations", advice });
-        }
-        // TOML's integers are signed.
-        let seed = self.seed.unwrap_or_default();
-        require(seed < 1 << 63, "realise.seed", seed, "below 2^63")
-    }
-
-    fn check_methods(&self) -> Result<(), InvalidRecipe> {
-        let names = |methods: &[Method]| methods.iter().map(|m| m.name()).collect::<Vec<_>>();
-        let methods = &self.methods;
-        let once = methods.iter().enumerate().all(|(i, a)| !methods[..i].contains(a));
-        let known = methods.iter().all(|method| method.is_a_choice());
-        let wanted = "one or several of measured, matched, random-phase, sines and isotropic, each once \
-                      (directions: realise.directions; areal surfaces of maps: a section [ingest.maps])";
-        let valid = !methods.is_empty() && once && known;
-        require(valid, "realise.methods", names(methods), wanted)?;
-        let sines = methods.contains(&Method::Sines);
-        let wanted = "at least one number for the method sines, or none without it";
-        require(sines != self.waves.is_empty(), "realise.waves", &self.waves, wanted)?;
-        let directions = &self.directions;
-        let once = directions.iter().enumerate().all(|(i, a)| !directions[..i].contains(a));
-        let wanted = "forward, backward or both, each once";
-        require(once && !directions.is_empty(), "realise.directions", directions, wanted)?;
-        let mirrored = self.periodic.unwrap_or_default() == Closure::Mirror;
-        let wanted = "forward alone where windows are mirrored, which makes both directions the same: set \
-                      realise.periodic = \"blend\"";
-        let backward = directions.contains(&Direction::Backward);
-        require(!backward || !mirrored, "realise.directions", directions, wanted)?;
-        let wanted = "left out unless realise.methods names measured";
-        let measured = methods.contains(&Method::Measured);
-        require(measured || !backward, "realise.directions", directions, wanted)?;
-        let lengths = [
-            ("realise.shortest_wavelength_mm", self.shortest_wavelength_mm),
-            ("realise.longest_gap_mm", self.longest_gap_mm),
-        ];
-        for (key, length) in lengths.into_iter().filter_map(|(key, mm)| Some((key, mm?))) {
-            require(length > 0.0 && length.is_finite(), key, length, "positive and finite")?;
-            let wanted = "left out unless realise.methods has surfaces of windows";
-            require(self.names_windows() || self.is_isotropic(), key, length, wanted)?;
-        }
-        if let Some(period) = self.isotropic_period_mm {
-            let key = "realise.isotropic_period_mm";
-            let wanted = "positive, and left out unless realise.methods names isotropic";
-            require(
-                period > 0.0 && period.is_finite() && self.is_isotropic(),
-                key,
-                period,
-                wanted,
-            )?;
-        }
-        let windows = self.most_windows.unwrap_or(1);
-        require(windows > 0, "realise.most_windows", windows, "1 or more")
-    }
-
-    /// Whether there are profiles of windows of the scans.
-    pub fn has_windows(&self) -> bool {
-        self.profiles && self.names_windows()
-    }
-
-    /// Whether a method makes surfaces of windows, of line scans or of maps.
-    pub fn names_windows(&self) -> bool {
-        self.methods.iter().any(|method| method.of_a_window())
-    }
-
-    /// Whether there are isotropic areal surfaces.
-    pub fn is_isotropic(&self) -> bool {
-        self.methods.contains(&Method::Isotropic)
-    }
-
-    /// Whether there are surfaces whose phases are drawn.
-    pub(crate) fn draws(&self) -> bool {
-        self.methods.iter().any(|method| *method != Method::Measured)
-    }
-
-    /// Number of surfaces that are drawn: as many as there may be need of. To draw one costs nothing.
-    pub fn drawn(&self) -> u32 {
-        self.most_realisations.or(self.realisations).unwrap_or(0)
-    }
-
-    /// Number of areal surfaces that are drawn of each method.
-    pub fn areal_drawn(&self) -> u32 {
-        self.areal_realisations.unwrap_or(self.drawn().min(MOST_AREAL))
-    }
-}
-
-/// Most areal surfaces that are drawn unless the recipe says otherwise.
-const MOST_AREAL: u32 = 8;
-
-fn yes() -> bool {
-    true
-}
-
-// The signature is that of serde.
-#[allow(clippy::trivially_copy_pass_by_ref)]
-fn is_yes(flag: &bool) -> bool {
-    *flag
-}
-
-fn sines_alone() -> Vec<Method> {
-    vec![Method::Sines]
-}
-
-fn is_sines_alone(methods: &[Method]) -> bool {
-    methods == [Method::Sines]
-}
-
-fn forward_alone() -> Vec<Direction> {
-    vec![Direction::Forward]
-}
-
-fn is_forward_alone(directions: &[Direction]) -> bool {
-    directions == [Direction::Forward]
-}
-
-/// The direction in which rubber slides over a measured window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Direction {
-    /// As the positions of the scan ascend.
-    Forward,
-    /// The other way.
-    Backward,
 }
 
 /// Most realisations for a `tolerance`, unless the recipe says otherwise.
@@ -293,7 +117,7 @@ pub fn schemas() -> Vec<SchemaVersion> {
     vec![SURFACES.schema(), PROFILES.schema(), AREAL_SURFACES.schema(), AREAL.schema()]
 }
 
-/// Makes the surfaces and writes them; returns warnings.
+/// Makes the surfaces and writes them; returns warnings. `limit` tells the shortest wavelength where maps stand alone.
 ///
 /// Approximations whose surfaces are the same (`same_surfaces`) are realised once, under the number of waves that
 /// the recipe names first.
@@ -304,14 +128,21 @@ pub fn schemas() -> Vec<SchemaVersion> {
 pub fn run(
     parameters: &Realise,
     maps: bool,
+    limit: Option<&MapLimit>,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let fitted = run.rows(WAVES)?;
+    // Maps that stand alone have no fit.
+    let fitted = if limit.is_some() { Vec::new() } else { run.rows(WAVES)? };
     let seed = parameters.seed.unwrap_or_default();
-    let (mut rows, mut realised, mut warnings) = (Vec::new(), Vec::<u32>::new(), Vec::new());
-    let fitted_mm = fitted.iter().map(|row| row.wavelength_mm).fold(f64::INFINITY, f64::min);
-    let shortest = parameters.shortest_wavelength_mm.unwrap_or(fitted_mm).mm_to_m();
+    let (mut rows, mut realised) = (Vec::new(), Vec::<u32>::new());
+    let mut warnings = parameters.idle_keys(maps);
+    let shortest = match (parameters.shortest_wavelength_mm, limit) {
+        (Some(own_mm), _) => own_mm,
+        (None, Some(limit)) => limit.shortest_mm(run)?,
+        (None, None) => fitted.iter().map(|row| row.wavelength_mm).fold(f64::INFINITY, f64::min),
+    }
+    .mm_to_m();
     if parameters.has_windows() {
         let windows = read_windows(run)?;
         let (surfaces, profiles, told) = profiles::of_windows(parameters, &windows, shortest)?;
@@ -360,7 +191,8 @@ fn write_areal(
     }
     if parameters.is_isotropic() {
         let (windows, spectrum) = (read_windows(run)?, run.rows(ISOTROPIC)?);
-        let (more, their_rows, told) = areal::isotropic(parameters, &windows, &spectrum, shortest)?;
+        let (more, their_rows, told) =
+            isotropic::isotropic(parameters, &windows, &spectrum, shortest)?;
         surfaces.extend(more);
         rows.extend(their_rows);
         warnings.extend(told);

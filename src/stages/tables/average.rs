@@ -7,7 +7,7 @@ use crate::stages::StageError;
 use crate::stages::areal::AREAL_CURVES;
 use crate::stages::bem::Given;
 use crate::stages::friction::{Condition, FrictionAt};
-use crate::stages::realise::SurfaceKind;
+use crate::stages::realise::{ArealRow, SurfaceKind};
 use crate::stages::{fem, hybrid};
 use std::collections::BTreeMap;
 
@@ -15,13 +15,14 @@ use std::collections::BTreeMap;
 pub(super) fn solved(
     models: Models,
     bem: &[FrictionAt],
+    areal: &[ArealRow],
     run: &RunView,
 ) -> Result<Vec<(Model, Vec<FrictionAt>)>, StageError> {
     let mut values = vec![(Model::Bem, bem.to_vec())];
     if let Some(angle_deg) = models.angle_deg {
         let curves = run.rows(AREAL_CURVES)?;
         let first = curves.iter().filter(|row| row.angle_deg == angle_deg);
-        values.push((Model::Bem, first.map(FrictionAt::from).collect()));
+        values.push((Model::Bem, of_all(first.map(FrictionAt::from).collect(), areal)));
     }
     if models.hybrid.is_some() {
         // Area and pressure are those of the half-space.
@@ -58,6 +59,15 @@ fn complete(values: Vec<FrictionAt>, half_space: &[FrictionAt]) -> Vec<FrictionA
     };
     let (present, wanted): (BTreeMap<_, u32>, _) = (counts(&values), counts(half_space));
     let full = |value: &FrictionAt| Some(&present[&key(value)]) == wanted.get(&key(value));
+    values.into_iter().filter(full).collect()
+}
+
+/// The values that every areal surface of their kind has, for the same reason.
+fn of_all(values: Vec<FrictionAt>, surfaces: &[ArealRow]) -> Vec<FrictionAt> {
+    let expected = |kind| surfaces.iter().filter(|surface| surface.kind == kind).count();
+    let mut present = BTreeMap::new();
+    values.iter().for_each(|value| *present.entry(key(value)).or_insert(0) += 1);
+    let full = |value: &FrictionAt| present[&key(value)] == expected(value.curve.kind);
     values.into_iter().filter(full).collect()
 }
 

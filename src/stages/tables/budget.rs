@@ -3,7 +3,7 @@
 use super::{FrictionRow, Model};
 use crate::artifact::{Row, Table};
 use crate::stages::bem::Given;
-use crate::stages::realise::SurfaceKind;
+use crate::stages::realise::{Method, SurfaceKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,10 @@ impl Part {
         }
     }
 }
+
+/// Why isotropic surfaces have no error by the choice of scans.
+const NO_SCAN_ERROR: &str = "isotropic surfaces have the averaged spectrum of all scans, and none is made without some of \
+    them; measured profiles or maps tell what the choice of scans does (realise.methods)";
 
 /// One part of the error of one average.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -134,7 +138,11 @@ fn parts(row: &FrictionRow, rows: &[FrictionRow]) -> Vec<(Part, Option<f64>, Str
             four_times(row.half_space_realisations.map_or(row.realisations.len(), |n| n as usize));
         let more = format!("{more} more realisations halve it (realise.realisations)");
         parts.push((Part::Phases, row.confidence_95, more));
-        parts.push((Part::Scans, row.scan_error, more_scans));
+        let scans = match row.kind.method {
+            Method::Isotropic => NO_SCAN_ERROR.to_owned(),
+            _ => more_scans,
+        };
+        parts.push((Part::Scans, row.scan_error, scans));
     }
     if row.model == Model::Hybrid {
         let more = "four times as many stretches halve it (micro.stretches)".to_owned();

@@ -34,7 +34,7 @@ mod total;
 
 use super::approximate::WAVES;
 use super::bem::CURVES;
-use super::characterise::{RELIABLE_KEY, length_in};
+use super::characterise::{AREAL_PARAMETERS, RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
 use super::friction::FrictionAt;
 use super::hybrid::Hybrid;
@@ -92,6 +92,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         fem: chain.fem.is_some(),
         multilevel: chain.multilevel.is_some(),
         scans: chain.ingest.is_some(),
+        lines: chain.has_lines(),
         angle_deg: chain.areal.angles_deg.first().copied().filter(|_| chain.has_areal_surfaces()),
         layer_mm: chain.areal.thickness_mm,
         lines_deg: match chain.ingest.and_then(|ingest| ingest.map_lines) {
@@ -118,7 +119,8 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     };
     let planned = Planned::new(parameters, run)
         .reading(super::bem::CURVES)
-        .reading(super::approximate::WAVES)
+        .reading_if(!models.maps_alone(), super::approximate::WAVES)
+        .reading_if(models.maps_alone(), AREAL_PARAMETERS)
         .reading_if(chain.micro.is_some(), super::hybrid::HYBRID)
         .reading_if(chain.fem.is_some(), super::fem::FEM)
         .reading_if(chain.multilevel.is_some(), super::multilevel::AVERAGES)
@@ -178,6 +180,8 @@ pub struct Models {
     pub multilevel: bool,
     /// The recipe has scans.
     pub scans: bool,
+    /// Line scans are taken of them.
+    pub lines: bool,
     /// The first direction of sliding over areal surfaces, if there are any.
     pub angle_deg: Option<f64>,
     /// Thickness in mm of the layer that slides over them; a half-space if there is none.
@@ -201,6 +205,11 @@ impl Models {
              ratio_to_measured compares both",
             self.lines_deg
         ))
+    }
+
+    /// Maps stand alone: nothing was fitted to lines.
+    fn maps_alone(self) -> bool {
+        self.scans && !self.lines
     }
 
     /// Above this root mean square slope waves are corrected.
@@ -229,13 +238,17 @@ pub fn run(
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
-    let (fitted, metadata) = run.read_table(WAVES)?;
+    let (fitted, metadata) = if models.maps_alone() {
+        (Vec::new(), run.read_table(AREAL_PARAMETERS)?.1)
+    } else {
+        run.read_table(WAVES)?
+    };
     let half_space = run.rows(CURVES)?;
     let surfaces = read_surfaces(run)?;
     let areal = if models.angle_deg.is_some() { run.rows(AREAL_SURFACES)? } else { Vec::new() };
     let basis = Basis::read(run, &surfaces, &areal, models.scans)?;
     let bem: Vec<FrictionAt> = half_space.iter().map(FrictionAt::from).collect();
-    let mut values = solved(models, &bem, run)?;
+    let mut values = solved(models, &bem, &areal, run)?;
     let mut rows: Vec<FrictionRow> =
         values.iter().flat_map(|(model, values)| average(*model, values.clone())).collect();
     if let Some(corrected) = models.hybrid {

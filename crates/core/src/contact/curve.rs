@@ -106,6 +106,29 @@ pub fn friction_curve<E>(
     first_guess: f64,
     solve: impl FnMut(f64) -> Result<CurvePoint, E>,
 ) -> Result<Vec<CurveValue>, CurveError<E>> {
+    friction_curve_within(targets, Accuracy { tolerance, least_friction: 0.0 }, first_guess, solve)
+}
+
+/// When a curve is good enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Error of friction by interpolation, relative to the friction.
+    pub tolerance: f64,
+    /// Friction to which the tolerance refers where friction is less, as it is where it vanishes by symmetry: no error is small
+    /// beside nothing.
+    pub least_friction: f64,
+}
+
+/// [`friction_curve`] with a least friction to which the tolerance refers.
+///
+/// # Errors
+/// Those of [`friction_curve`].
+pub fn friction_curve_within<E>(
+    targets: &[f64],
+    accuracy: Accuracy,
+    first_guess: f64,
+    solve: impl FnMut(f64) -> Result<CurvePoint, E>,
+) -> Result<Vec<CurveValue>, CurveError<E>> {
     let ascending = targets.windows(2).all(|w| w[0] < w[1]);
     let inside = targets.iter().all(|a| *a > 0.0 && *a < 1.0);
     if targets.is_empty() || !ascending || !inside {
@@ -118,7 +141,8 @@ pub fn friction_curve<E>(
     for _ in 0..MOST_SOLVES_PER_TARGET * targets.len() {
         let values = sampler.values(targets);
         let excess = |value: &CurveValue| {
-            value.interpolation_error / (tolerance * value.friction_coefficient.abs())
+            let friction = value.friction_coefficient.abs().max(accuracy.least_friction);
+            value.interpolation_error / (accuracy.tolerance * friction)
         };
         let Some(worst) = values.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))) else {
             break;
@@ -347,6 +371,25 @@ mod tests {
             assert!(solves <= most && solves <= previous, "{solves} solves for {tolerance}");
             previous = solves;
         }
+    }
+
+    #[test]
+    fn friction_that_vanishes_settles_on_an_error_beside_its_scale() {
+        // Nothing but what the grid makes of it, different at every pressure.
+        let vanishing = |pressure: f64| -> Result<CurvePoint, Infallible> {
+            let friction_coefficient = 1e-7 * (1e3 * pressure.ln()).sin();
+            Ok(CurvePoint { friction_coefficient, ..point(pressure)? })
+        };
+        let never = friction_curve(&TARGETS, 1e-2, 3e3, vanishing);
+        assert!(matches!(never, Err(CurveError::NotSmooth { .. })), "{never:?}");
+        let accuracy = Accuracy { tolerance: 1e-2, least_friction: 1e-4 };
+        for value in friction_curve_within(&TARGETS, accuracy, 3e3, vanishing).unwrap() {
+            assert!(value.friction_coefficient.abs() < 2e-7 && value.interpolation_error <= 1e-6);
+        }
+        // Where there is friction it changes nothing.
+        let usual = friction_curve(&TARGETS, 1e-3, 3e3, point).unwrap();
+        let accuracy = Accuracy { tolerance: 1e-3, least_friction: 1e-4 };
+        assert_eq!(friction_curve_within(&TARGETS, accuracy, 3e3, point).unwrap(), usual);
     }
 
     #[test]

@@ -255,6 +255,10 @@ impl Conditioning {
             check(key, value, value > 0.0 && value.is_finite(), "it must be positive")
         };
         if let Some([lowest, highest]) = self.valid_range_mm {
+            let demand = "the range is [lowest, highest], and its ends are swapped or the same: give the lowest height first";
+            // What is no number is told of below.
+            let swapped = lowest >= highest;
+            check("valid_range_mm", lowest, !swapped, demand)?;
             let demand = "the range [lowest, highest] must hold the median, 0";
             check("valid_range_mm", lowest, lowest < 0.0, demand)?;
             check("valid_range_mm", highest, highest > 0.0, demand)?;

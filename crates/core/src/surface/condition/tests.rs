@@ -30,6 +30,10 @@ fn an_empty_recipe_is_the_default_and_all_keys_are_read() {
 fn parameters_out_of_range_are_named() {
     for (toml, key) in [
         ("valid_range_mm = [1, 5]", "valid_range_mm"),
+        (
+            "valid_range_mm = [5, -5]",
+            "valid_range_mm is 5; the range is [lowest, highest], and its ends are swapped",
+        ),
         ("spike_threshold = nan", "spike_threshold"),
         ("lateral_resolution_um = 0", "lateral_resolution_um"),
         ("samples_per_resolution = inf", "samples_per_resolution"),

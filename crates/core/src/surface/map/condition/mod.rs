@@ -168,6 +168,10 @@ impl MapConditioning {
             check(key, value, value > 0.0 && value.is_finite(), "it must be positive")
         };
         if let Some([lowest, highest]) = self.valid_range_mm {
+            let require = "the range is [lowest, highest], and its ends are swapped or the same: give the lowest height first";
+            // What is no number is told of below.
+            let swapped = lowest >= highest;
+            check("valid_range_mm", lowest, !swapped, require)?;
             let require = "the range [lowest, highest] must hold the median, 0";
             check("valid_range_mm", lowest, lowest < 0.0, require)?;
             check("valid_range_mm", highest, highest > 0.0, require)?;

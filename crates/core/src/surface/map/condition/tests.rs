@@ -41,6 +41,10 @@ fn parameters_out_of_range_are_named() {
     for (toml, key) in [
         ("valid_range_mm = [1, 5]", "valid_range_mm is 1;"),
         ("valid_range_mm = [-1, nan]", "valid_range_mm is NaN;"),
+        (
+            "valid_range_mm = [5, -5]",
+            "valid_range_mm is 5; the range is [lowest, highest], and its ends are swapped",
+        ),
         ("spike_threshold = nan", "spike_threshold is NaN;"),
         ("jump_threshold = -1", "jump_threshold is -1;"),
         ("lateral_resolution_um = 0", "lateral_resolution_um is 0;"),
