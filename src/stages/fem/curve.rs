@@ -7,7 +7,7 @@ use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
 use crate::numerics::interpolation::CubicHermite;
-use crate::rubber::{Rheology, Rubber};
+use crate::rubber::Rubber;
 use crate::stages::bem::{Given, Wanted};
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
@@ -64,7 +64,7 @@ impl<'a> Solver<'a> {
             let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
             let profile = RigidProfile::from_waves(waves, period);
             let options = BlockOptions::of_profile(columns, &profile);
-            let (law, speed) = (Rheology::NeoHookean, speed_mm_s.mm_to_m());
+            let (law, speed) = (rubber.finite_strain, speed_mm_s.mm_to_m());
             Ok(SteadyContact::new(rubber, law, speed, profile, options)?.interruptible(interrupted))
         });
         Ok(Self {
@@ -291,7 +291,7 @@ pub(super) fn problem(
     speed_mm_s: f64,
     columns: usize,
 ) -> Value {
-    let mut problem = kept::problem("fem", SOLVER_REVISION, rubber);
+    let mut problem = kept::problem_at_finite_deformation("fem", SOLVER_REVISION, rubber);
     problem["profile"] = json!(surface.profile);
     problem["speed_mm_s"] = json!(speed_mm_s);
     problem["columns"] = json!(columns);
@@ -341,6 +341,7 @@ mod tests {
                 wanted,
                 columns,
                 reached,
+                beyond: None,
             })) => {
                 assert_eq!((wanted, columns), (pressure, 16));
                 reached
