@@ -166,7 +166,7 @@ mod tests {
         );
         refused("law = 'arruda-boyce'\nlocking_stretch = 0.5", "locking_stretch is 0.5");
         refused("law = 'arruda-boyce'\nlocking_stretch = nan", "locking_stretch is NaN");
-        refused("law = 'ogden'", "law");
+        refused("law = 'ogden'", "ogden");
         refused("law = 'yeoh'\nc4 = 1", "c4");
     }
 }
