@@ -178,9 +178,8 @@ fn what_is_beyond_the_law_is_refused_with_its_range() {
         };
         assert!(beyond.invariant > law.limit() && beyond.law == law, "{text}");
         // The last point that the law allows is below, and a solution.
-        if let PathEnd::At { pressure, friction_coefficient, .. } = reached {
-            assert!(pressure < 8e6 && friction_coefficient.is_finite(), "{text}");
-        }
+        let PathEnd::At { pressure, friction_coefficient, .. } = reached else { panic!("{text}") };
+        assert!(pressure < 8e6 && friction_coefficient.is_finite(), "{text}");
         // What is within the law is solved after that.
         let slight = contact.solve(2e4).unwrap();
         assert!(slight.largest_invariant.unwrap() <= law.limit(), "{slight:?}");

@@ -29,7 +29,7 @@
 //! chains are straight; at a chain stretch of 0.8 of that their force is 10 % below that of the inverse Langevin
 //! function. Yeoh's law ends where the shear stress `μ Φ'(γ²) γ` of simple shear has its maximum, at the first root of
 //! `Φ' + 2 y Φ'' = 1 + 6 (c2/c1) y + 15 (c3/c1) y²`: in plane strain equilibrium loses its ellipticity there (Abeyaratne
-//! 1980, doi:10.1007/BF00127451). There is no root for `(c2/c1)² < 5/3 c3/c1`. Beyond it Φ' is held constant, so that
+//! 1980, J. Elasticity 10, 255). There is no root for `(c2/c1)² < 5/3 c3/c1`. Beyond it Φ' is held constant, so that
 //! the iterations of a solver may pass through, but no solution may lie there.
 
 use super::law::{Hardening, Law};
