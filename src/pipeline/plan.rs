@@ -3,7 +3,7 @@
 use super::{PipelineError, Selection};
 use crate::artifact::{ArtifactError, Identity, RunView};
 use crate::recipe::Recipe;
-use crate::rubber::{FiniteStrainRubber, Rheology, Rubber, RubberData};
+use crate::rubber::{FiniteStrainRubber, Rubber, RubberData};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
     Job, Planned, Request, Stage, StageError, bem, fem, ingest, micro, multilevel, sinusoid, tables,
@@ -150,7 +150,7 @@ fn request<'a>(
 /// Fails for a rubber that the half-space takes and finite elements do not, before the half-space
 /// is solved for nothing.
 fn check_finite_strain(rubber: &Rubber, file: &Path) -> Result<(), StageError> {
-    match FiniteStrainRubber::new(rubber, Rheology::NeoHookean) {
+    match FiniteStrainRubber::new(rubber, rubber.finite_strain) {
         Ok(_) => Ok(()),
         Err(source) => {
             Err(StageError::RubberAtFiniteDeformation { path: file.to_path_buf(), source })

@@ -1,5 +1,6 @@
 //! A rubber as the text of its file.
 
+use super::law;
 use crate::units::Units;
 use asperity_core::rubber::{RubberData, ShiftLaw, VerticalShift};
 
@@ -46,6 +47,7 @@ pub fn to_toml(data: &RubberData, source: &str) -> String {
             }
         });
     }
+    lines.extend(law::to_lines(rubber.finite_strain));
     for branch in &rubber.branches {
         lines.push("\n[[branches]]".into());
         lines.push(format!("modulus_mpa = {:.6e}", branch.modulus.pa_to_mpa()));

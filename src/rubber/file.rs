@@ -23,7 +23,17 @@
 //! wlf = { c1 = 8.86, c2_k = 101.6 }        # or: arrhenius = { activation_energy_kj_mol = 90.0 }
 //! vertical = { rho_t = { expansion_per_k = 6.6e-4 } }   # optional; or: { power = { exponent = 1.1 } }
 //! ```
+//!
+//! Optional: the law of the springs at finite strain, neo-Hooke if absent ([`Rheology`]).
+//!
+//! ```toml
+//! [finite_strain]
+//! law = "yeoh"                             # or: "arruda-boyce" with locking_stretch = 2.5; "neo-hookean"
+//! c2_over_c1 = -0.1
+//! c3_over_c1 = 0.01
+//! ```
 
+use super::law::{FiniteStrainEntry, LawProblem};
 use crate::files::{self, TomlError};
 use crate::units::Units;
 use asperity_core::error_kind::{ErrorKind, HasKind};
@@ -32,7 +42,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use asperity_core::rubber::{
-    FrequencyRange, MaxwellBranch, Rubber, RubberData, RubberError, ShiftLaw,
+    FrequencyRange, MaxwellBranch, Rheology, Rubber, RubberData, RubberError, ShiftLaw,
     TemperatureDependence, TemperatureError, VerticalShift,
 };
 
@@ -97,6 +107,14 @@ pub enum RubberFileError {
         /// How many there are.
         found: usize,
     },
+    /// The section of the law at finite strain.
+    #[error("{}: {problem}", .path.display())]
+    FiniteStrain {
+        /// The file.
+        path: PathBuf,
+        /// Which key is missing or has no business there.
+        problem: LawProblem,
+    },
     /// A measured range that is none.
     #[error(
         "{}: measured_hz is [{}, {}], wanted are the lowest and the highest measured frequency, positive",
@@ -119,6 +137,7 @@ impl HasKind for RubberFileError {
             | Self::Invalid { .. }
             | Self::Temperature { .. }
             | Self::Laws { .. }
+            | Self::FiniteStrain { .. }
             | Self::MeasuredRange { .. } => ErrorKind::Input,
         }
     }
@@ -136,6 +155,7 @@ struct RubberFile {
     poisson_ratio: f64,
     measured_hz: Option<[f64; 2]>,
     temperature: Option<TemperatureEntry>,
+    finite_strain: Option<FiniteStrainEntry>,
     #[serde(default)]
     branches: Vec<BranchEntry>,
 }
@@ -214,6 +234,7 @@ impl From<RubberFile> for Rubber {
             equilibrium_modulus: file.equilibrium_modulus_mpa.mpa_to_pa(),
             branches: file.branches.iter().map(branch).collect(),
             poisson_ratio: file.poisson_ratio,
+            finite_strain: Rheology::default(),
         }
     }
 }
@@ -280,7 +301,11 @@ pub fn parse_rubber_data(path: &Path, text: &str) -> Result<RubberData, RubberFi
     if let Some((key, value)) = file.bad_number() {
         return Err(RubberFileError::Number { path: path.to_path_buf(), key, value });
     }
-    let rubber = Rubber::from(file);
+    let law = file.finite_strain.as_ref().map(FiniteStrainEntry::law).transpose();
+    let finite_strain = law
+        .map_err(|problem| RubberFileError::FiniteStrain { path: path.to_path_buf(), problem })?
+        .unwrap_or_default();
+    let rubber = Rubber { finite_strain, ..Rubber::from(file) };
     rubber
         .validate()
         .map_err(|source| RubberFileError::Invalid { path: path.to_path_buf(), source })?;

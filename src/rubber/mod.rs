@@ -6,15 +6,18 @@
 //! |---|---|
 //! | `document` | a rubber as the text of its file |
 //! | `file` | rubbers as TOML files |
+//! | `law` | their section of the law at finite strain |
 
 mod document;
 mod file;
+mod law;
 
 pub use asperity_core::rubber::*;
 pub use document::to_toml;
 pub use file::{
     RubberFileError, parse_rubber, parse_rubber_data, read_rubber, read_rubber_at, read_rubber_data,
 };
+pub use law::LawProblem;
 
 /// A rubber from measured storage and loss moduli: the fit of [`asperity_core::rubber::fit`], and the tables that it
 /// reads.

@@ -2,7 +2,7 @@
 //!
 //! | item | what it does |
 //! |---|---|
-//! | [`problem`] | what determines all solves of one rubber: the identity under which they are kept |
+//! | [`problem`], [`problem_at_finite_deformation`] | what determines all solves of one rubber: the identity under which they are kept |
 //! | [`Kept`] | single solves of one problem |
 //! | [`KeptPath`] | solves at finite deformation, each of which begins from the one before |
 //! | [`SolveTask`] | a curve or a microscale as one piece of work, which any machine can do |
@@ -10,7 +10,7 @@
 
 use super::{SolveError, StageError, Watch};
 use crate::artifact::{ArtifactError, Digest, SolveStore, Solves};
-use crate::fem::error::{FemError, PathEnd};
+use crate::fem::error::{BeyondLaw, FemError, PathEnd};
 use crate::fem::steady::SteadyContact;
 use crate::fem::steady::solution::SteadySolution;
 use crate::numerics::Interrupt;
@@ -31,6 +31,16 @@ pub(super) fn problem(solver: &str, revision: u32, rubber: &Rubber) -> Value {
         "branches": rubber.branches,
         "poisson_ratio": rubber.poisson_ratio,
     })
+}
+
+/// The same of a solver at finite deformation, which the law of the rubber determines too; a law that is not named is no
+/// part of it.
+pub(super) fn problem_at_finite_deformation(solver: &str, revision: u32, rubber: &Rubber) -> Value {
+    let mut problem = problem(solver, revision, rubber);
+    if !rubber.finite_strain.is_default() {
+        problem["finite_strain"] = json!(rubber.finite_strain);
+    }
+    problem
 }
 
 /// The kept solves of one problem.
@@ -93,7 +103,11 @@ impl<'a> Kept<'a> {
 #[serde(untagged)]
 enum Stored<T> {
     Solved(T),
-    Refused { refused: PathEnd },
+    Refused {
+        refused: PathEnd,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        beyond: Option<BeyondLaw>,
+    },
 }
 
 /// A contact at finite deformation along pressures, whose solutions are kept.
@@ -131,12 +145,12 @@ impl<'a, F: Fn() -> Result<SteadyContact, FemError>> KeptPath<'a, F> {
                 self.known.push(pressure);
                 return Ok(kept);
             }
-            Some(Stored::Refused { refused: reached }) => {
+            Some(Stored::Refused { refused: reached, beyond }) => {
                 if !self.contact()?.refusals_leave_no_trace() {
                     self.known.push(pressure);
                 }
                 let (wanted, columns) = (pressure, self.columns);
-                return Err(FemError::PathEnded { wanted, columns, reached }.into());
+                return Err(FemError::PathEnded { wanted, columns, reached, beyond }.into());
             }
             None => {}
         }
@@ -149,8 +163,8 @@ impl<'a, F: Fn() -> Result<SteadyContact, FemError>> KeptPath<'a, F> {
                 Ok(made)
             }
             Err(error) => {
-                if let FemError::PathEnded { reached, .. } = &error {
-                    let refused = Stored::<T>::Refused { refused: *reached };
+                if let FemError::PathEnded { reached, beyond, .. } = &error {
+                    let refused = Stored::<T>::Refused { refused: *reached, beyond: *beyond };
                     self.kept.solves.put(&key, &refused)?;
                 }
                 Err(error.into())

@@ -20,6 +20,7 @@ fn broad(branches: usize, shortest: f64, decades: f64, ratio: f64) -> Rubber {
         equilibrium_modulus,
         branches: (0..branches).map(branch).collect(),
         poisson_ratio: 0.49,
+        finite_strain: Default::default(),
     }
 }
 

@@ -167,6 +167,7 @@ fn both_routes_have_one_friction() {
             equilibrium_modulus: equilibrium,
             branches: vec![MaxwellBranch { modulus, relaxation_time }],
             poisson_ratio: 0.49,
+            finite_strain: Default::default(),
         };
         let options = BlockOptions::new(columns);
         // On twice the columns, where its own error is a thousandth.

@@ -1,5 +1,6 @@
-//! `asperity rubber`: a rubber file from measured moduli.
+//! `asperity rubber`: a rubber file from measured moduli, and its law at finite strain from a measured curve.
 
+mod hyperelastic;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -51,6 +52,7 @@ const NO_PLATEAU: f64 = 1.2;
 #[derive(Debug, Subcommand)]
 pub(super) enum Rubber {
     Fit(Fit),
+    Hyperelastic(hyperelastic::Hyperelastic),
 }
 
 /// Which modulus was measured.
@@ -164,6 +166,7 @@ impl Rubber {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         match self {
             Self::Fit(fit) => fit.run(quiet),
+            Self::Hyperelastic(curve) => curve.run(quiet),
         }
     }
 }

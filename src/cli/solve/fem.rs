@@ -46,8 +46,8 @@ Exit codes: 0 solved, 1 no solution found or not written, 2 bad input.";
 
 /// Solve the sliding contact of a rubber block with a periodic profile at finite deformation.
 ///
-/// The block is one period long; its rubber is neo-Hookean with Maxwell branches in finite linear
-/// viscoelasticity. The profile, the speed and the load are given as for solve bem.
+/// The block is one period long; its rubber is that of --rubber with Maxwell branches in finite linear
+/// viscoelasticity, under the law that its file names, or neo-Hookean. The profile, the speed and the load are given as for solve bem.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 #[command(group(ArgGroup::new("load").required(true).args(["pressure", "area"])))]
@@ -77,9 +77,10 @@ pub(in crate::cli) struct Fem {
     /// until it is reached; steady route only. Without it the error of the one mesh is estimated.
     #[arg(long, value_name = "RELATIVE", conflicts_with = "columns", value_parser = values::tolerance, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Law of the springs at finite strain.
-    #[arg(long, value_name = "LAW", value_enum, default_value_t = Law::NeoHookean)]
-    rheology: Law,
+    /// Law of the springs at finite strain [default: that of the section [finite_strain] of --rubber, neo-hookean
+    /// without one].
+    #[arg(long, value_name = "LAW", value_enum)]
+    rheology: Option<Law>,
     /// Height of the block in periods.
     #[arg(long, value_name = "PERIODS", default_value_t = 0.75, value_parser = values::positive, allow_negative_numbers = true)]
     height: f64,
@@ -165,6 +166,11 @@ impl Fem {
             Route::Transient => self.transient(rubber, profile, &shape, options, quiet)?,
         };
         print(&if self.json { json(&summary)? } else { summary.table() })
+    }
+
+    /// The law of the option or of the rubber.
+    fn rheology(&self, rubber: &Rubber) -> Rheology {
+        self.rheology.map_or(rubber.finite_strain, Rheology::from)
     }
 
     /// Refuses options that contradict each other.
@@ -286,7 +292,7 @@ impl Fem {
         profile: &RigidProfile,
         options: BlockOptions,
     ) -> Result<SteadySolution, CliError> {
-        let (rheology, speed) = (self.rheology.into(), self.speed.mm_to_m());
+        let (rheology, speed) = (self.rheology(rubber), self.speed.mm_to_m());
         let mut contact = SteadyContact::new(rubber, rheology, speed, profile.clone(), options)?;
         match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => {
@@ -329,7 +335,7 @@ impl Fem {
             ..TransientOptions::default()
         };
         let contact =
-            TransientContact::new(rubber, self.rheology.into(), speed, profile, mesh, drag)?;
+            TransientContact::new(rubber, self.rheology(rubber), speed, profile, mesh, drag)?;
         let spinner = Spinner::new(quiet, "pressing in");
         let solution = contact.run(pressure, |sample| {
             if sample.displacement > 0.0 {
@@ -357,6 +363,7 @@ impl Fem {
 fn with_advice(of: &str, error: FemError) -> CliError {
     let advice = match &error {
         FemError::Rubber(_) | FemError::OutOfRange { .. } | FemError::Interrupted => "",
+        FemError::PathEnded { beyond: Some(_), .. } => "",
         FemError::PathEnded { reached: PathEnd::NotStarted | PathEnd::NotGrown, .. } => {
             "; try other --columns"
         }
@@ -391,7 +398,11 @@ mod tests {
     #[test]
     fn a_path_that_never_began_has_no_pressure_below() {
         let ended = |reached| {
-            with_advice("", FemError::PathEnded { wanted: 24e6, columns: 48, reached }).to_string()
+            with_advice(
+                "",
+                FemError::PathEnded { wanted: 24e6, columns: 48, reached, beyond: None },
+            )
+            .to_string()
         };
         let never = ended(PathEnd::NotStarted);
         assert!(

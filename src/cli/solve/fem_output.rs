@@ -30,6 +30,9 @@ pub(super) struct Summary {
     /// Largest less smallest friction of the averaged periods; transient route only.
     #[serde(skip_serializing_if = "Option::is_none")]
     friction_oscillation: Option<f64>,
+    /// Largest I1 - 3 of a spring; none under the linear law and for the transient route.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    largest_invariant: Option<f64>,
     /// `None` if coarser meshes do not resolve the contact, and for the transient route.
     error_estimate: Option<ErrorEstimate>,
 }
@@ -50,6 +53,7 @@ impl Summary {
             rows: solution.elements[1],
             hysteretic_friction: solution.hysteretic_friction,
             friction_oscillation: None,
+            largest_invariant: solution.largest_invariant,
         }
     }
 
@@ -67,6 +71,7 @@ impl Summary {
             mean_separation_mm: solution.mean_separation.mean.m_to_mm(),
             pressure_mpa: pressure.pa_to_mpa(),
             residual: None,
+            largest_invariant: None,
             iterations: solution.counts.iterations.newton,
             grid_points: elements[0],
             seconds,
@@ -104,6 +109,9 @@ impl Summary {
             ("columns x rows", format!("{} x {}", self.grid_points, self.rows)),
             ("time", significant(self.seconds) + " s"),
         ]);
+        if let Some(invariant) = self.largest_invariant {
+            lines.push(("largest I1 - 3", significant(invariant)));
+        }
         aligned(&lines)
     }
 }

@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::{CliError, values};
-use asperity::rubber::{
-    FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
-};
+use asperity::rubber::{FiniteStrainRubber, FrequencyRange, Rubber, RubberData, read_rubber_data};
 
 /// The rubber.
 #[derive(Debug, Args)]
@@ -57,7 +55,7 @@ impl MaterialOptions {
     /// The rubber, if it can be solved at finite deformation.
     pub(super) fn material_at_finite_deformation(&self) -> Result<Material, CliError> {
         let material = self.material()?;
-        match FiniteStrainRubber::new(material.rubber(), Rheology::NeoHookean) {
+        match FiniteStrainRubber::new(material.rubber(), material.rubber().finite_strain) {
             Ok(_) => Ok(material),
             Err(error) => Err(self.named(error)),
         }

@@ -61,6 +61,9 @@ impl Report<'_> {
                 ": relaxed modulus " (number(1e-6 * rubber.equilibrium_modulus, 4)) " MPa, glassy modulus "
                 (number(1e-6 * rubber.glassy_modulus(), 4)) " MPa, Poisson ratio " (rubber.poisson_ratio)
                 ", " (rubber.branches.len()) " Maxwell branches."
+                @if !rubber.finite_strain.is_default() {
+                    " Law at finite strain: " (rubber.finite_strain.name()) "."
+                }
                 @match material.measured {
                     Some([low, high]) => { " It was measured from " (number(low, 3)) " to " (number(high, 3)) " Hz at this temperature." }
                     None => { " Its file does not say at which frequencies it was measured." }

@@ -7,7 +7,7 @@ use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
 use crate::numerics::interpolation::CubicHermite;
-use crate::rubber::{Rheology, Rubber};
+use crate::rubber::Rubber;
 use crate::stages::bem::{Given, Wanted};
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
@@ -64,7 +64,7 @@ impl<'a> Solver<'a> {
             let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
             let profile = RigidProfile::from_waves(waves, period);
             let options = BlockOptions::of_profile(columns, &profile);
-            let (law, speed) = (Rheology::NeoHookean, speed_mm_s.mm_to_m());
+            let (law, speed) = (rubber.finite_strain, speed_mm_s.mm_to_m());
             Ok(SteadyContact::new(rubber, law, speed, profile, options)?.interruptible(interrupted))
         });
         Ok(Self {
@@ -291,7 +291,7 @@ pub(super) fn problem(
     speed_mm_s: f64,
     columns: usize,
 ) -> Value {
-    let mut problem = kept::problem("fem", SOLVER_REVISION, rubber);
+    let mut problem = kept::problem_at_finite_deformation("fem", SOLVER_REVISION, rubber);
     problem["profile"] = json!(surface.profile);
     problem["speed_mm_s"] = json!(speed_mm_s);
     problem["columns"] = json!(columns);
@@ -303,6 +303,7 @@ mod tests {
     use super::*;
     use crate::fem::error::PathEnd;
     use crate::numerics::Interrupt;
+    use crate::rubber::Rheology;
     use crate::surface::Wave;
 
     fn solved(pressure_mpa: f64, friction_coefficient: f64, area: f64) -> FemSolveRow {
@@ -341,6 +342,7 @@ mod tests {
                 wanted,
                 columns,
                 reached,
+                beyond: None,
             })) => {
                 assert_eq!((wanted, columns), (pressure, 16));
                 reached
@@ -360,6 +362,32 @@ mod tests {
         let mut behind = solver();
         assert!(behind.point(hopeless).is_err());
         assert_eq!(behind.point(2e4).unwrap().pressure_mpa, 0.02);
+    }
+
+    /// The law of a rubber decides on its solves and is part of their identity, if the rubber names one.
+    #[test]
+    fn a_law_that_is_named_has_solves_of_its_own() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = SolveStore::open(folder.path()).unwrap();
+        let wave = Wave { wavelength: 1e-3, amplitude: 1.5e-4, phase: 0.0 };
+        let surface = Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: vec![wave] };
+        let (interrupted, parameters) = (Interrupt::default(), Fem::default());
+        let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
+        let plain = Rubber::table_2_1();
+        let finite_strain = Rheology::ArrudaBoyce { locking_stretch: 1.5 };
+        let named = Rubber { finite_strain, ..plain.clone() };
+        let friction = |rubber: &Rubber| {
+            let mut solver =
+                Solver::new(16, &parameters, rubber, &surface, 10.0, &store, watch).unwrap();
+            solver.point(5e5).unwrap().friction_coefficient
+        };
+        let [a, b] = [&plain, &named].map(friction);
+        assert!((a / b - 1.0).abs() > 1e-3, "{a} {b}");
+        let key = |rubber: &Rubber| problem(rubber, &surface, 10.0, 16);
+        assert!(key(&plain).get("finite_strain").is_none());
+        assert_eq!(key(&named)["finite_strain"], json!(finite_strain));
+        // The half-space asks for no law.
+        assert_eq!(kept::problem("bem", 1, &plain), kept::problem("bem", 1, &named));
     }
 
     /// Solves of a real curve: from the second to the third the area grows by a hundredth and friction by a

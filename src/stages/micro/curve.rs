@@ -9,7 +9,7 @@ use crate::fem::steady::{BlockOptions, COLUMNS_RANGE, SteadyContact};
 use crate::multiscale::sampling::{geometric, interpolation_errors, refinement};
 use crate::multiscale::{LawEnd, LocalLaw};
 use crate::numerics::Interrupt;
-use crate::rubber::{Rheology, Rubber};
+use crate::rubber::Rubber;
 use crate::stages::SolveError;
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::surface::wave;
@@ -81,7 +81,7 @@ impl<'a> MicroCurve<'a> {
         let set_up: SetUp = Box::new(move || {
             let profile = RigidProfile::from_waves(&task.micro, period);
             let options = BlockOptions::of_profile(columns, &profile);
-            let (law, speed) = (Rheology::NeoHookean, task.speed_mm_s.mm_to_m());
+            let (law, speed) = (rubber.finite_strain, task.speed_mm_s.mm_to_m());
             let contact = SteadyContact::new(rubber, law, speed, profile, options)?;
             let contact = match parameters.contact_length_mm {
                 Some(length) => contact.lasting(length.mm_to_m()),
@@ -319,7 +319,7 @@ impl HalfSpace<'_> {
 
 /// What all samples of a microscale have in common.
 pub(super) fn problem(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Value {
-    let mut problem = kept::problem("micro", SOLVER_REVISION, rubber);
+    let mut problem = kept::problem_at_finite_deformation("micro", SOLVER_REVISION, rubber);
     problem["profile"] = json!(task.micro);
     problem["speed_mm_s"] = json!(task.speed_mm_s);
     problem["columns"] = json!(columns);

@@ -261,6 +261,14 @@ pub fn run(
         pending.write_rows(FIELDS, &fields)?;
     }
     let mut warnings = RubberData::from(rubber.clone()).oddities();
+    if !rubber.finite_strain.is_default() {
+        warnings.push(format!(
+            "rubber {}: its law at finite strain, {}, is left out, since this study compares the half-space, the \
+             linear law and neo-Hooke; `solve fem` and the stages micro, fem and multilevel use it",
+            rubber.name,
+            rubber.finite_strain.name()
+        ));
+    }
     warnings.extend(warning("the sweep", &points));
     if parameters.pressure_dependence.is_some() {
         let rows = points::rows(&pressures, pressed, &scale);

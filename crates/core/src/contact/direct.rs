@@ -74,7 +74,8 @@ mod tests {
     fn the_pressures_close_the_gap_on_the_set_under_the_transform_too() {
         let branches = vec![MaxwellBranch { modulus: 5e8, relaxation_time: 1e-5 }];
         let (name, equilibrium_modulus, poisson_ratio) = ("one branch".into(), 2e6, 0.45);
-        let rubber = Rubber { name, equilibrium_modulus, branches, poisson_ratio };
+        let rubber =
+            Rubber { name, branches, ..Rubber::elastic(equilibrium_modulus, poisson_ratio) };
         let n = 512;
         let mut space = HalfSpace::new(&mut RealFftPlanner::new(), &rubber, 0.2, 1e-3, n).unwrap();
         let mut unit = vec![0.0; n];

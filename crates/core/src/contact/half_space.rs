@@ -276,6 +276,7 @@ mod tests {
             equilibrium_modulus: 2e6,
             branches: vec![MaxwellBranch { modulus: 5e8, relaxation_time: 1e-4 }],
             poisson_ratio: 0.45,
+            finite_strain: Default::default(),
         }
     }
 

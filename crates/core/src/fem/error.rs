@@ -2,7 +2,7 @@
 
 use super::steady::solution::SteadySolution;
 use crate::error_kind::{ErrorKind, HasKind};
-use crate::rubber::RubberError;
+use crate::rubber::{Rheology, RubberError};
 use serde::{Deserialize, Serialize};
 
 /// Why there is no solution to report.
@@ -23,8 +23,8 @@ pub enum FemError {
     },
     /// The path of solutions ended below the pressure asked for.
     #[error(
-        "no finite-deformation solution at {:.4} MPa on {columns} columns: the path ended {}",
-        .wanted / 1e6, .reached.describe()
+        "no finite-deformation solution at {:.4} MPa on {columns} columns: the path ended {}{}",
+        .wanted / 1e6, .reached.describe(), .beyond.map_or(String::new(), |beyond| format!("; {beyond}"))
     )]
     PathEnded {
         /// The mean pressure asked for, in Pa.
@@ -33,6 +33,9 @@ pub enum FemError {
         columns: usize,
         /// The last point that converged.
         reached: PathEnd,
+        /// How far the rubber was strained there, if the equations have a solution but the law of the rubber does not
+        /// hold in it.
+        beyond: Option<BeyondLaw>,
     },
     /// The user's interrupt.
     #[error("interrupted")]
@@ -69,6 +72,45 @@ impl FemError {
     /// was interrupted.
     pub fn is_no_solution(&self) -> bool {
         matches!(self, Self::PathEnded { .. } | Self::AreaNotReached { .. })
+    }
+}
+
+/// A strain at which the law of the rubber does not hold.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BeyondLaw {
+    /// The law with its constants.
+    pub law: Rheology,
+    /// `I1 - 3` of the spring that is strained most.
+    pub invariant: f64,
+}
+
+impl BeyondLaw {
+    /// If the law does not hold there.
+    pub(super) fn of(law: Rheology, invariant: Option<f64>) -> Option<Self> {
+        let invariant = invariant?;
+        // NaN is no state either.
+        let holds = invariant <= law.limit();
+        (!holds).then_some(Self { law, invariant })
+    }
+}
+
+impl std::fmt::Display for BeyondLaw {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let Self { law, invariant } = self;
+        let (name, limit) = (law.name(), law.limit());
+        write!(
+            f,
+            "I1 - 3 is {invariant:.4} in the spring that is strained most, and the law of {name} holds up to {limit:.4}: "
+        )?;
+        match law {
+            Rheology::ArrudaBoyce { .. } => {
+                f.write_str("its chains are straight there; choose a larger locking_stretch or a smaller pressure")
+            }
+            _ => f.write_str(
+                "its shear stress has a maximum there; choose a larger c3_over_c1, fitted to larger strains, or a \
+                 smaller pressure",
+            ),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rubber at finite deformation on a rigid periodic profile.
 //!
-//! A block of one period, in plane strain, of a neo-Hookean (or linear) spring with Maxwell branches in finite linear
-//! viscoelasticity (thesis, chapters 2 and 4) slides without friction in the contact over the profile; all loss is
+//! A block of one period, in plane strain, of a spring with Maxwell branches in finite linear viscoelasticity (thesis,
+//! chapters 2 and 4; the law of the springs is a [`Rheology`](crate::rubber::Rheology)) slides without friction in the contact over the profile; all loss is
 //! hysteresis. Two solvers check each other:
 //!
 //! - [`steady`]: the stationary field in the frame of the profile. One Newton solve a pressure.
@@ -21,6 +21,8 @@
 pub mod cost;
 pub mod error;
 mod kinematics;
+#[cfg(test)]
+mod laws;
 pub mod mesh;
 pub mod profile;
 pub mod steady;

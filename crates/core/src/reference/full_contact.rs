@@ -66,6 +66,7 @@ mod tests {
             equilibrium_modulus: 1e6,
             branches: vec![MaxwellBranch { modulus: 8e6, relaxation_time: 1e-3 }],
             poisson_ratio: 0.0,
+            finite_strain: Default::default(),
         };
         let wave = SineScale { wavelength: TAU * 1e-3, amplitude: 1e-5 };
         let contact = FullContact { rubber: &rubber, wave, speed: 1.0 };

@@ -1,6 +1,7 @@
 //! Generalised Maxwell model of a linear viscoelastic solid.
 
-use super::{FrequencyRange, Viscoelastic};
+use super::finite_strain::BadConstant;
+use super::{FrequencyRange, Rheology, Viscoelastic};
 use crate::error_kind::{ErrorKind, HasKind};
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -28,6 +29,10 @@ pub struct Rubber {
     pub branches: Vec<MaxwellBranch>,
     /// Poisson ratio, the same at all frequencies.
     pub poisson_ratio: f64,
+    /// Law of its springs at finite strain; neo-Hooke unless it is known better. The half-space, of small strains, does
+    /// not ask for it.
+    #[serde(default, skip_serializing_if = "Rheology::is_default")]
+    pub finite_strain: Rheology,
 }
 
 /// Errors of the numbers of a rubber.
@@ -62,6 +67,18 @@ pub enum RubberError {
         value: f64,
         /// The largest value it takes.
         limit: f64,
+    },
+    /// A constant of the law at finite strain that is none.
+    #[error("rubber {rubber}: {key} is {value}, it must be {range}")]
+    Law {
+        /// Name of the rubber.
+        rubber: String,
+        /// Its key.
+        key: &'static str,
+        /// The value.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
     },
     /// Measured moduli at fewer than two frequencies.
     #[error("rubber {rubber} has moduli at {points} point(s), it needs at least two")]
@@ -106,6 +123,7 @@ impl HasKind for RubberError {
             Self::NotPositive { .. }
             | Self::PoissonRatio { .. }
             | Self::NotCompressible { .. }
+            | Self::Law { .. }
             | Self::TooFewPoints { .. }
             | Self::NotAscending { .. }
             | Self::NotMeasured { .. } => ErrorKind::Input,
@@ -121,10 +139,12 @@ impl Rubber {
             equilibrium_modulus: modulus,
             branches: Vec::new(),
             poisson_ratio,
+            finite_strain: Rheology::default(),
         }
     }
 
-    /// Checks that every modulus and time is positive and the Poisson ratio is in `[0, 0.5]`.
+    /// Checks that every modulus and time is positive, the Poisson ratio is in `[0, 0.5]` and the law at finite strain
+    /// has its constants.
     ///
     /// # Errors
     /// Names the first number that is not.
@@ -158,7 +178,14 @@ impl Rubber {
                 value: self.poisson_ratio,
             });
         }
-        Ok(())
+        self.check_law(self.finite_strain)
+    }
+
+    /// Checks the constants of a law at finite strain.
+    pub(super) fn check_law(&self, law: Rheology) -> Result<(), RubberError> {
+        law.bad_constant().map_or(Ok(()), |BadConstant { key, value, range }| {
+            Err(RubberError::Law { rubber: self.name.clone(), key, value, range })
+        })
     }
 
     /// Complex modulus E(ω) in Pa at the angular frequency ω in rad/s; its real part is the

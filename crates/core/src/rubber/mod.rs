@@ -11,9 +11,11 @@
 //! | `oddities` | warnings of numbers that look like a mistake |
 //! | [`finite_strain`] | stress, tangent and heat at finite deformation |
 //! | [`fit`] | a Prony series from measured storage and loss moduli |
+//! | [`hyperelastic`] | the law at finite strain from a measured curve of stress over stretch |
 
 pub mod finite_strain;
 pub mod fit;
+pub mod hyperelastic;
 
 mod data;
 mod frequencies;

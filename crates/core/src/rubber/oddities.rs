@@ -9,6 +9,9 @@ const SOFTEST: f64 = 1e2;
 /// No relaxation time is measured beyond it, in s; it would be some 300 000 years.
 const SLOWEST: f64 = 1e13;
 
+/// Range in `I1 - 3` of a law at finite strain: below it few contacts of a road are in range.
+const LEAST_RANGE: f64 = 4.0;
+
 impl RubberData {
     /// Warnings of numbers that no rubber has, as written in the file, with what to do.
     pub fn oddities(&self) -> Vec<String> {
@@ -53,6 +56,16 @@ impl RubberData {
                 rubber.branches[k].relaxation_time
             ));
         }
+        let limit = rubber.finite_strain.limit();
+        if limit < LEAST_RANGE {
+            oddities.push(format!(
+                "rubber {name}: its law at finite strain, {}, holds up to a shear of {:.2} (I1 - 3 = {limit:.3}), and \
+                 finite elements refuse contacts that go further; the tips of a road shear rubber by 2 to 5: check its \
+                 constants, fitted to larger strains",
+                rubber.finite_strain.name(),
+                limit.sqrt()
+            ));
+        }
         let branches = &rubber.branches;
         let twice = (1..branches.len()).find(|k| branches[..*k].contains(&branches[*k]));
         if let Some(k) = twice {
@@ -69,7 +82,7 @@ impl RubberData {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rubber::Rubber;
+    use crate::rubber::{Rheology, Rubber};
 
     fn oddities(rubber: Rubber) -> Vec<String> {
         RubberData::from(rubber).oddities()
@@ -83,6 +96,16 @@ mod tests {
         assert!(in_pa[0].contains("write 4.17"), "{in_pa:?}");
         let soft = oddities(Rubber::table_2_1().scaled(1e-9));
         assert!(soft.len() == 1 && soft[0].contains("check the unit"), "{soft:?}");
+        let of_law = |c3_over_c1: f64| {
+            let finite_strain = Rheology::Yeoh { c2_over_c1: -0.1, c3_over_c1 };
+            oddities(Rubber { finite_strain, ..Rubber::table_2_1() })
+        };
+        assert_eq!(of_law(0.01), [""; 0]);
+        let short = of_law(0.0);
+        assert!(
+            short.len() == 1 && short[0].contains("a shear of 1.29 (I1 - 3 = 1.667)"),
+            "{short:?}"
+        );
         let elastic = oddities(Rubber::elastic(4e6, 0.5));
         assert!(elastic.len() == 1 && elastic[0].contains("has no branches"), "{elastic:?}");
     }

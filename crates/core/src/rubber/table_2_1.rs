@@ -1,6 +1,6 @@
 //! The rubber of the published tables.
 
-use super::{MaxwellBranch, Rubber};
+use super::{MaxwellBranch, Rheology, Rubber};
 
 /// Modulus in MPa and relaxation time in s of each branch (thesis, Table 2.1).
 const BRANCHES: [(f64, f64); 6] = [
@@ -25,6 +25,7 @@ impl Rubber {
             equilibrium_modulus: 4.17 * PA_PER_MPA,
             branches: BRANCHES.map(branch).into(),
             poisson_ratio: 0.49,
+            finite_strain: Rheology::NeoHookean,
         }
     }
 }

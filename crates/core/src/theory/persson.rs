@@ -167,6 +167,7 @@ mod tests {
                 MaxwellBranch { modulus: 2e8, relaxation_time: 1e-5 },
             ],
             poisson_ratio: 0.49,
+            finite_strain: Default::default(),
         }
     }
 

@@ -75,6 +75,16 @@ impl Block {
             .collect();
         powers.iter().sum()
     }
+
+    /// Largest `I1 - 3` of a spring at the last displacements; `None` under the linear law.
+    pub fn largest_invariant(&self, displacements: &[Long]) -> Option<f64> {
+        let (grid, material) = (&self.grid, &self.material);
+        let rows = self.rows.par_iter().enumerate();
+        let largest: Option<Vec<f64>> = rows
+            .map(|(r, row)| row.largest_invariant(material, &differences(grid, displacements, r)))
+            .collect();
+        Some(largest?.into_iter().fold(0.0, f64::max))
+    }
 }
 
 /// Differences between the corners of a row of elements.

@@ -7,6 +7,8 @@ use super::{NotConverged, SteadyContact};
 
 /// Points of an ended path, from the last one back, at which the exact contact is tried.
 const MOST_CLOSED: usize = 8;
+/// Ratio of the pressures that are tried below one at which the law of the rubber does not hold.
+const LOWER: f64 = 1.5;
 /// Halvings of the interval between the last point with an exact contact and the first without.
 const MOST_HALVINGS: usize = 3;
 
@@ -57,7 +59,11 @@ impl SteadyContact {
             }
             let path = self.path.as_mut()?;
             beyond = Some(path.state.pressure);
-            path.step_back()?;
+            if path.step_back().is_none() {
+                // On a new grid no state was passed; where the law of the rubber ended the path, there are contacts below.
+                self.beyond?;
+                path.jump_to(path.state.pressure / LOWER).ok()?;
+            }
         }
         None
     }

@@ -89,12 +89,22 @@ impl Row {
         let branches = material.relaxations.len();
         let units = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mut own = units.map(|unit| point.own_stress(volumetric, &unit));
+        if let Some(hardened) = self.own(kind, column) {
+            for (own, unit) in own.iter_mut().zip(&units) {
+                let more = hardened.stress(unit);
+                (0..3).for_each(|i| own[i] += more[i]);
+            }
+        }
         let mut upstream = [[0.0; 3]; 3];
         for k in 0..branches {
             let history = self.history(kind, [k, column]);
             let (here, there) = shares(&history, angle);
+            let hardened = self.relief(kind, [k, column]);
             for (unit, (own, upstream)) in units.iter().zip(own.iter_mut().zip(&mut upstream)) {
-                let relief = history.relief(volumetric, &point, unit);
+                let mut relief = history.relief(volumetric, &point, unit);
+                if let Some(more) = hardened.map(|hardened| hardened.of(unit)) {
+                    (0..3).for_each(|i| relief[i] += more[i]);
+                }
                 for i in 0..3 {
                     own[i] -= here * relief[i];
                     upstream[i] -= there * relief[i];

@@ -19,6 +19,7 @@
 //! | `grid` | rows of nodes and elements; fewer columns away from the contact |
 //! | `flow`, `passage` | the flow rule along a row of unequally spaced labels, and the internal measures by it |
 //! | `point`, `row`, `tangent`, `block` | internal forces and their tangent with relaxation history |
+//! | `hardening` | what a law that stiffens adds to that tangent |
 //! | `lanes` | points of an element side by side in vector registers |
 //! | `long` | displacements with the digits that double precision rounds off |
 //! | `contact` | force and gap of a node from one smooth unknown |
@@ -38,6 +39,7 @@ mod contact;
 mod flow;
 mod grid;
 mod growth;
+mod hardening;
 mod ladder;
 mod lanes;
 mod last;
@@ -62,7 +64,7 @@ mod transfer;
 
 pub use options::{BlockOptions, COLUMNS_RANGE, HEIGHT_RANGE};
 
-use super::error::{FemError, PathEnd};
+use super::error::{BeyondLaw, FemError, PathEnd};
 use super::profile::RigidProfile;
 use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
@@ -115,6 +117,8 @@ pub struct SteadyContact {
     ladder: Ladder,
     /// The pressures in Pa that have been solved.
     solved: Vec<(f64, PathEnd)>,
+    /// The first solution of the equations at the pressure asked for in which the law of the rubber does not hold.
+    beyond: Option<BeyondLaw>,
 }
 
 impl SteadyContact {
@@ -140,7 +144,7 @@ impl SteadyContact {
         } else {
             Ladder::none(options.columns)
         };
-        Ok(Self { setting, profile, options, path: None, ladder, solved: Vec::new() })
+        Ok(Self { setting, profile, options, path: None, ladder, solved: Vec::new(), beyond: None })
     }
 
     /// A contact that a longer profile lets last for a `length` in m of sliding only, after which branches still carry
@@ -168,7 +172,8 @@ impl SteadyContact {
     ///
     /// # Errors
     /// [`FemError::OutOfRange`] for a pressure that is not positive and finite;
-    /// [`FemError::PathEnded`] with the last point that converged; [`FemError::Interrupted`].
+    /// [`FemError::PathEnded`] with the last point that converged, also where the equations have a solution in which the
+    /// law of the rubber does not hold; [`FemError::Interrupted`].
     pub fn solve(&mut self, pressure: f64) -> Result<SteadySolution, FemError> {
         if !(pressure > 0.0 && pressure.is_finite()) {
             return Err(FemError::OutOfRange {
@@ -182,7 +187,12 @@ impl SteadyContact {
             path.take_cost();
             path.place()
         });
-        let solved = self.go_on(pressure).or_else(|NotConverged| self.set_out(pressure));
+        self.beyond = None;
+        let solved = match self.go_on(pressure) {
+            // Another way would lead to the same solution.
+            Err(NotConverged) if self.beyond.is_some() => Err(None),
+            gone_on => gone_on.or_else(|NotConverged| self.set_out(pressure)),
+        };
         match solved {
             Ok(solution) => {
                 assert_eq!(solution.mean_pressure, pressure, "a solution of another pressure");
@@ -192,6 +202,7 @@ impl SteadyContact {
             // After an interrupt every path ends.
             Err(_) if self.setting.interrupt.is_set() => Err(FemError::Interrupted),
             Err(ended) => {
+                let beyond = self.beyond;
                 let reached = if self.refusals_leave_no_trace() {
                     if let (Some(path), Some(before)) = (&mut self.path, before) {
                         path.return_to(before);
@@ -207,6 +218,7 @@ impl SteadyContact {
                     wanted: pressure,
                     columns: self.options.columns,
                     reached,
+                    beyond,
                 })
             }
         }
@@ -221,10 +233,11 @@ impl SteadyContact {
     /// The solution at a pressure from the points passed before, if there are any.
     fn go_on(&mut self, pressure: f64) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
-        if let Some(exact) = path.finish_nearby(pressure, self.ladder.path_tolerance())
-            && let Ok(solution) = self.climb(exact)
-        {
-            return Ok(solution);
+        if let Some(exact) = path.finish_nearby(pressure, self.ladder.path_tolerance()) {
+            let climbed = self.climb(exact);
+            if climbed.is_ok() || self.beyond.is_some() {
+                return climbed;
+            }
         }
         let path = self.path.as_mut().ok_or(NotConverged)?;
         path.return_towards(pressure);
@@ -306,13 +319,21 @@ impl SteadyContact {
         self.climb(exact)
     }
 
-    /// The solution on the finest grid, from the exact contact on the grid of the path.
+    /// The solution on the finest grid, from the exact contact on the grid of the path. One in which the law of the
+    /// rubber does not hold is none.
     fn climb(&mut self, exact: (State, f64)) -> Result<SteadySolution, NotConverged> {
         let path = self.path.as_mut().ok_or(NotConverged)?;
         let (setting, profile) = (&self.setting, &self.profile);
-        self.ladder.climb(path, exact, setting.speed, |columns| {
+        let solution = self.ladder.climb(path, exact, setting.speed, |columns| {
             Level::new(setting, &BlockOptions { columns, ..self.options }, profile)
-        })
+        })?;
+        match BeyondLaw::of(setting.finite.rheology, solution.largest_invariant) {
+            None => Ok(solution),
+            Some(beyond) => {
+                self.beyond.get_or_insert(beyond);
+                Err(NotConverged)
+            }
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use super::super::kinematics::{Tensor, green_strain, strain_change};
 use super::Inverted;
 use super::lanes::{Lanes, lane, set_lane};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, Measure, Scalar, Spring, Symmetric, contract, sandwich,
+    FiniteStrainRubber, Hardening, Measure, Scalar, Spring, Symmetric, contract, sandwich,
 };
 
 /// Smallest `A` and `Q` of a valid element.
@@ -26,7 +26,8 @@ const LEAST: f64 = 1e-3;
 /// volumetric  δT = (c G:δm - Σ_k c_k G_k:δm_k) G - σ G δm G
 /// ```
 ///
-/// with `G`, `c_k = Λ_k/2 V/V_k` and `σ = Σ_k (c_k - Λ_k/2)` of the law ([`metric`](crate::rubber::Rheology::metric)).
+/// with `G`, `c_k = Λ_k/2 V/V_k` and `σ = Σ_k (c_k - Λ_k/2)` of the law ([`metric`](crate::rubber::Rheology::metric)). For a
+/// law that stiffens `μ_k` is that times its `Φ'`, and the rest is in `hardening`.
 /// Forces follow in double precision; what a row keeps for its tangent is in single precision, since it determines
 /// directions, not solutions.
 #[derive(Debug, Clone, Copy, Default)]
@@ -202,23 +203,25 @@ pub(super) struct Law<'a> {
 }
 
 impl Law<'_> {
-    /// Stress and coefficients of the equilibrium spring.
+    /// Stress and coefficients of the equilibrium spring, with its hardening.
     #[inline]
     pub fn equilibrium(
         &self,
         point: &mut Point,
         measure: &Symmetric,
-    ) -> Result<Symmetric, Inverted> {
+    ) -> Result<(Symmetric, Option<Hardening>), Inverted> {
         let spring = &self.rubber.equilibrium;
         let (metric, volume) = self.rubber.rheology.metric(measure).ok_or(Inverted)?;
+        let tensors = [measure, &[0.0; 3], measure];
+        let hardening = self.hardening(tensors);
         point.metric = metric;
-        point.modulus = self.modulus(spring, volume);
+        point.modulus = self.modulus(spring, volume, hardening.as_ref());
         point.pressure = self.pressure(spring, volume);
-        Ok(self.stress(spring, [measure, &[0.0; 3], measure]))
+        Ok((self.stress(spring, tensors), hardening))
     }
 
     /// Adds stress and coefficients of a branch with the internal measure `internal` and its difference to
-    /// the measure.
+    /// the measure; returns its hardening.
     #[inline]
     pub fn branch(
         &self,
@@ -227,12 +230,13 @@ impl Law<'_> {
         history: &mut History,
         tensors: [&Symmetric; 3],
         stress: &mut Symmetric,
-    ) -> Result<(), Inverted> {
+    ) -> Result<Option<Hardening>, Inverted> {
         let [measure, internal, _] = tensors;
         let rheology = self.rubber.rheology;
         let (metric, past) = rheology.metric(internal).ok_or(Inverted)?;
         let volume = rheology.volume(measure) / past;
-        let modulus = self.modulus(spring, volume);
+        let hardening = self.hardening(tensors);
+        let modulus = self.modulus(spring, volume, hardening.as_ref());
         let factor = if self.volumetric {
             modulus
         } else {
@@ -248,7 +252,14 @@ impl Law<'_> {
         point.pressure += self.pressure(spring, volume);
         let part = self.stress(spring, tensors);
         (0..3).for_each(|i| stress[i] += part[i]);
-        Ok(())
+        Ok(hardening)
+    }
+
+    /// What the stiffening of the law adds, if it stiffens and this is its shear part.
+    #[inline]
+    fn hardening(&self, tensors: [&Symmetric; 3]) -> Option<Hardening> {
+        let stiffens = !self.volumetric && self.rubber.rheology.stiffens();
+        stiffens.then(|| self.rubber.hardening(tensors))
     }
 
     fn stress(&self, spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric {
@@ -259,8 +270,9 @@ impl Law<'_> {
         }
     }
 
-    fn modulus(&self, spring: &Spring, volume: f64) -> f64 {
-        if self.volumetric { 0.5 * spring.volumetric * volume } else { spring.shear }
+    fn modulus(&self, spring: &Spring, volume: f64, hardening: Option<&Hardening>) -> f64 {
+        let factor = hardening.map_or(1.0, |hardening| hardening.slope);
+        if self.volumetric { 0.5 * spring.volumetric * volume } else { spring.shear * factor }
     }
 
     fn pressure(&self, spring: &Spring, volume: f64) -> f64 {

@@ -6,6 +6,7 @@
 use super::super::mesh::{CENTRE, Element, POINTS};
 use super::Inverted;
 use super::flow::Relaxation;
+use super::hardening::{Hardened, Own, Relief};
 use super::lanes::{Lanes, Rule};
 use super::long::Value;
 use super::passage::{Line, relax};
@@ -45,6 +46,8 @@ pub(super) struct Linearised<T> {
     pub points: Vec<Point<T>>,
     /// One branch after another, columns first.
     pub history: Vec<History<T>>,
+    /// Of a law that stiffens.
+    pub hardened: Option<Hardened<T>>,
 }
 
 impl<T: Lanes> Linearised<T> {
@@ -52,6 +55,7 @@ impl<T: Lanes> Linearised<T> {
         Self {
             points: vec![Point::default(); columns],
             history: vec![History::default(); branches * columns],
+            hardened: None,
         }
     }
 }
@@ -106,13 +110,18 @@ impl Row {
     ) -> Self {
         let points = POINTS * columns;
         let converted = !material.rubber.rheology.is_in_green_strain();
+        let branches = material.relaxations.len();
+        let mut gauss = Linearised::new(columns, branches);
+        if material.rubber.rheology.stiffens() {
+            gauss.hardened = Some(Hardened::new(columns, branches));
+        }
         Self {
             element,
             width: period / columns as f64,
             height,
             columns,
-            gauss: Linearised::new(columns, material.relaxations.len()),
-            centre: Linearised::new(columns, material.relaxations.len()),
+            gauss,
+            centre: Linearised::new(columns, branches),
             conversions: vec![Conversion::default(); if converted { points } else { 0 }],
         }
     }
@@ -186,6 +195,29 @@ impl Row {
         } else {
             self.gauss.history[at].lane(kind)
         }
+    }
+
+    fn keep_own(&mut self, kind: usize, own: &[Own]) {
+        if let Some(hardened) = &mut self.gauss.hardened {
+            let own = own.iter().enumerate();
+            own.for_each(|(column, own)| hardened.set_own(column, kind, own));
+        }
+    }
+
+    fn keep_relief(&mut self, kind: usize, at: [usize; 2], relief: &Relief) {
+        if let Some(hardened) = &mut self.gauss.hardened {
+            hardened.set_relief(at, kind, relief);
+        }
+    }
+
+    /// The hardening of a law that stiffens, at a point.
+    pub fn own(&self, kind: usize, column: usize) -> Option<Own> {
+        if kind == CENTRE { None } else { self.gauss.hardened.as_ref()?.own_lane(column, kind) }
+    }
+
+    /// The same of a branch.
+    pub fn relief(&self, kind: usize, at: [usize; 2]) -> Option<Relief> {
+        if kind == CENTRE { None } else { self.gauss.hardened.as_ref()?.relief_lane(at, kind) }
     }
 
     /// The deformation of a kind of points.
@@ -268,10 +300,15 @@ impl Row {
         kind: usize,
     ) -> Result<Vec<Symmetric>, Inverted> {
         let law = Law { rubber: &material.rubber, volumetric: kind == CENTRE };
-        let measures = points.iter_mut().zip(&line.measures);
-        let stresses: Result<Vec<_>, _> =
-            measures.map(|(point, measure)| law.equilibrium(point, measure)).collect();
-        let mut stresses = stresses?;
+        let mut own = vec![Own::default(); points.len()];
+        let mut stresses = Vec::with_capacity(points.len());
+        for (point, (measure, own)) in points.iter_mut().zip(line.measures.iter().zip(&mut own)) {
+            let (stress, hardening) = law.equilibrium(point, measure)?;
+            stresses.push(stress);
+            if let Some(hardening) = hardening {
+                own.add(material.rubber.equilibrium.shear, &hardening);
+            }
+        }
         for (k, (spring, relaxation)) in
             material.rubber.branches.iter().zip(&material.relaxations).enumerate()
         {
@@ -280,13 +317,20 @@ impl Row {
                 let mut history = passage.history(relaxation.length);
                 let tensors = [&line.measures[column], &passage.after, &passage.lag];
                 let (point, stress) = (&mut points[column], &mut stresses[column]);
-                let added = law.branch(spring, point, &mut history, tensors, stress);
-                if added.is_err() {
-                    valid = added;
+                match law.branch(spring, point, &mut history, tensors, stress) {
+                    Ok(None) => {}
+                    Ok(Some(hardening)) => {
+                        own[column].add(spring.shear, &hardening);
+                        self.keep_relief(kind, [k, column], &Relief::new(spring.shear, &hardening));
+                    }
+                    Err(Inverted) => valid = Err(Inverted),
                 }
                 self.keep_history(kind, [k, column], &history);
             });
             valid?;
+        }
+        if kind != CENTRE {
+            self.keep_own(kind, &own);
         }
         Ok(stresses)
     }
@@ -295,19 +339,7 @@ impl Row {
     pub fn dissipation(&self, material: &Material, differences: &Differences) -> f64 {
         let mut power = 0.0;
         for kind in 0..POINTS {
-            let rule = Rule::new(&self.element, kind);
-            let mut points = vec![Point::default(); self.columns];
-            let measures: Vec<Symmetric> = points
-                .iter_mut()
-                .enumerate()
-                .map(|(column, point)| {
-                    let gradient = self.displacement_gradient(differences, &rule, column);
-                    let strain = point.deform(&gradient).unwrap_or([f64::NAN; 3]);
-                    let conversion = self.conversions.get(kind * self.columns + column);
-                    conversion.map_or(strain, |conversion| conversion.measure.value())
-                })
-                .collect();
-            let line = Line { measures, spacings: self.spacings(differences, &rule) };
+            let (line, labels) = self.deformed_line(differences, kind);
             for (spring, relaxation) in material.rubber.branches.iter().zip(&material.relaxations) {
                 relax(relaxation, &line, |column, passage| {
                     let measure = &line.measures[column];
@@ -315,11 +347,48 @@ impl Row {
                         material.rubber.dissipation(spring, measure, &passage.after);
                     let part = if kind == CENTRE { volumetric } else { shear };
                     // An area of the undeformed block: dX = A ds dZ.
-                    power += self.element.weights[kind] * points[column].label[0] * part;
+                    power += self.element.weights[kind] * labels[column] * part;
                 });
             }
         }
         power
+    }
+
+    /// Largest `I1 - 3` of a spring in the last deformed state, at its displacements, where shear parts are integrated.
+    pub fn largest_invariant(&self, material: &Material, differences: &Differences) -> Option<f64> {
+        let rubber = &material.rubber;
+        let mut largest: Option<f64> = None;
+        let mut count = |tensors: [&Symmetric; 3]| {
+            let found = rubber.invariant(tensors);
+            largest = found.map(|found| largest.map_or(found, |before| before.max(found)));
+        };
+        for kind in (0..POINTS).filter(|kind| *kind != CENTRE) {
+            let (line, _) = self.deformed_line(differences, kind);
+            line.measures.iter().for_each(|measure| count([measure, &[0.0; 3], measure]));
+            for relaxation in &material.relaxations {
+                relax(relaxation, &line, |column, passage| {
+                    count([&line.measures[column], &passage.after, &passage.lag]);
+                });
+            }
+        }
+        largest
+    }
+
+    /// Measures, distances and `A` of a kind of points in the last deformed state, at its displacements.
+    fn deformed_line(&self, differences: &Differences, kind: usize) -> (Line, Vec<f64>) {
+        let rule = Rule::new(&self.element, kind);
+        let mut labels = Vec::with_capacity(self.columns);
+        let measures: Vec<Symmetric> = (0..self.columns)
+            .map(|column| {
+                let mut point = Point::default();
+                let gradient = self.displacement_gradient(differences, &rule, column);
+                let strain = point.deform(&gradient).unwrap_or([f64::NAN; 3]);
+                labels.push(point.label[0]);
+                let conversion = self.conversions.get(kind * self.columns + column);
+                conversion.map_or(strain, |conversion| conversion.measure.value())
+            })
+            .collect();
+        (Line { measures, spacings: self.spacings(differences, &rule) }, labels)
     }
 }
 

@@ -20,6 +20,10 @@ pub struct SteadySolution {
     pub mean_separation: f64,
     /// Mean shear of the block.
     pub shear: f64,
+    /// Largest `I1 - 3` of the elastic part of the deformation of a spring, at the points where shear parts are
+    /// integrated; `None` under the linear law. Beyond [`Rheology::limit`](crate::rubber::Rheology::limit) there is no
+    /// solution.
+    pub largest_invariant: Option<f64>,
     /// Root mean square, over the contact nodes, of the unbalanced nodal forces, over the mean contact
     /// force. Gaps are met exactly.
     pub residual: f64,
@@ -86,6 +90,7 @@ impl SteadySolution {
             contact_area_fraction: touching / n as f64,
             mean_separation: mean_height - surface.scale.mean,
             shear: state.shear(grid),
+            largest_invariant: level.block.largest_invariant(&state.displacements),
             residual,
             newton_steps: 0,
             krylov_iterations: 0,

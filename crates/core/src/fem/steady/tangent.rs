@@ -5,6 +5,7 @@
 
 use super::super::mesh::CENTRE;
 use super::flow::Relaxation;
+use super::hardening::Relief;
 use super::lanes::{Lanes, Rule, lane, set_lane};
 use super::point::{History, Point};
 use super::row::{Differences, Linearised, Material, Row, nodal, scatter};
@@ -41,8 +42,9 @@ impl Row {
         let rule = Rule::new(&self.element, first);
         let mut changes = self.changes(differences, &rule, (first, law));
         let branches = law.history.chunks_exact(self.columns);
-        for (relaxation, history) in material.relaxations.iter().zip(branches) {
-            changes.relax(relaxation, history, &law.points, first == CENTRE);
+        for (k, (relaxation, history)) in material.relaxations.iter().zip(branches).enumerate() {
+            let more = law.hardened.as_ref().map_or(&[][..], |hardened| hardened.branch(k));
+            changes.relax(relaxation, (history, more), &law.points, first == CENTRE);
         }
         let made = changes.gradients.iter().zip(&changes.stresses);
         for (column, (point, (gradient, conjugate))) in law.points.iter().zip(made).enumerate() {
@@ -72,7 +74,12 @@ impl Row {
             let gradient = self.displacement_gradient(differences, rule, column);
             let strain = point.strain_change(&point.deformation_change(&gradient));
             let measure = self.measure(&strain, [first, column]);
-            changes.stresses.push(point.own_stress(first == CENTRE, &measure));
+            let mut stress = point.own_stress(first == CENTRE, &measure);
+            if let Some(own) = law.hardened.as_ref().and_then(|hardened| hardened.own(column)) {
+                let more = own.stress(&measure);
+                (0..3).for_each(|i| stress[i] = stress[i] + more[i]);
+            }
+            changes.stresses.push(stress);
             changes.gradients.push(gradient);
             changes.measures.push(measure);
         }
@@ -120,11 +127,11 @@ fn by_lane<T: Lanes>(value: impl Fn(usize) -> Symmetric) -> [T; 3] {
 }
 
 impl<T: Lanes> Changes<T> {
-    /// Subtracts the relief by a branch from the stresses.
+    /// Subtracts the relief by a branch from the stresses; `more` is that of a law that stiffens, or empty.
     fn relax(
         &mut self,
         relaxation: &Relaxation,
-        history: &[History<T>],
+        (history, more): (&[History<T>], &[Relief<T>]),
         points: &[Point<T>],
         volumetric: bool,
     ) {
@@ -143,10 +150,14 @@ impl<T: Lanes> Changes<T> {
             state = state.map(|y| y * periods);
         }
         let columns = history.iter().zip(&inputs).zip(points.iter().zip(&mut self.stresses));
-        for ((history, input), (point, stress)) in columns {
+        for (column, ((history, input), (point, stress))) in columns.enumerate() {
             state = history.step(&state, input);
             let relief = history.relief(volumetric, point, &state);
             (0..3).for_each(|i| stress[i] = stress[i] - relief[i]);
+            if let Some(more) = more.get(column) {
+                let relief = more.of(&state);
+                (0..3).for_each(|i| stress[i] = stress[i] - relief[i]);
+            }
         }
     }
 }

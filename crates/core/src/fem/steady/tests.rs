@@ -16,6 +16,10 @@ use std::time::{Duration, Instant};
 
 const PERIOD: f64 = 6.25e-5;
 
+const YEOH: Rheology = Rheology::Yeoh { c2_over_c1: -0.1, c3_over_c1: 0.01 };
+const ARRUDA_BOYCE: Rheology = Rheology::ArrudaBoyce { locking_stretch: 2.0 };
+const LAWS: [Rheology; 4] = [Rheology::NeoHookean, Rheology::Linear, YEOH, ARRUDA_BOYCE];
+
 pub(super) fn setting(rubber: &Rubber, rheology: Rheology, speed: f64) -> Setting {
     let finite = FiniteStrainRubber::new(rubber, rheology).unwrap();
     Setting { rubber: rubber.clone(), finite, speed, interrupt: Default::default() }
@@ -77,7 +81,12 @@ fn in_a_short_contact_the_mean_is_glassy_and_the_rest_relaxes() {
 #[test]
 fn homogeneous_deformation_is_in_equilibrium() {
     let grading = Grading { first: 0.8, growth: 1.3 };
-    for (law, coarsening) in [(Rheology::NeoHookean, true), (Rheology::Linear, false)] {
+    for (law, coarsening) in [
+        (Rheology::NeoHookean, true),
+        (Rheology::Linear, false),
+        (YEOH, true),
+        (ARRUDA_BOYCE, false),
+    ] {
         let options = BlockOptions { grading, coarsening, ..BlockOptions::new(128) };
         let mut block = block(&Rubber::table_2_1(), law, &options, 0.01);
         let grid = block.grid.clone();
@@ -101,7 +110,7 @@ fn homogeneous_deformation_is_in_equilibrium() {
 #[test]
 fn the_tangent_is_the_derivative_of_the_forces() {
     let grading = Grading { first: 0.8, growth: 1.3 };
-    for law in [Rheology::NeoHookean, Rheology::Linear] {
+    for law in LAWS {
         // The last one is coarsened; speeds at which all branches remember, some, and none.
         for (columns, speed) in [(10, 1e-6), (10, 0.01), (10, 10.0), (128, 0.01)] {
             let coarsening = columns == 128;
@@ -140,7 +149,7 @@ fn the_tangent_is_the_derivative_of_the_forces() {
 fn the_local_tangent_is_exact_without_relaxation_history() {
     use super::stiffness::{Positions, pattern};
     let rubber = Rubber::elastic(4e6, 0.49);
-    for law in [Rheology::NeoHookean, Rheology::Linear] {
+    for law in LAWS {
         let mut block = block(&rubber, law, &BlockOptions::new(12), 0.01);
         let mut generator = Pcg64::seed_from_u64(5);
         let count = 2 * block.grid.nodes();

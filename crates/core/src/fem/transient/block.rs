@@ -5,7 +5,7 @@ use super::point::{Part, Response};
 use crate::fem::kinematics::{Tensor, green_strain, nodal_strain_change};
 use crate::fem::mesh::{CENTRE, Element, Mesh, POINTS};
 use crate::rubber::finite_strain::{
-    FiniteStrainRubber, Measure, Spring, Symmetric, contract, dilatation,
+    FiniteStrainRubber, Measure, Rheology, Spring, Symmetric, contract, difference, dilatation,
 };
 use rayon::prelude::*;
 
@@ -113,6 +113,42 @@ impl TransientBlock {
             sum.add(&f, gradients, element.weights[point], &response);
         }
         Ok(sum)
+    }
+
+    /// The law of the rubber.
+    pub fn rheology(&self) -> Rheology {
+        self.rubber.rheology
+    }
+
+    /// Largest `I1 - 3` of a spring at the end of a step, where shear parts are integrated; NaN in an inverted element,
+    /// `None` under a law without an end.
+    pub fn largest_invariant(&self, history: &History, displacements: &[f64]) -> Option<f64> {
+        if self.rubber.rheology.limit() == f64::INFINITY {
+            return None;
+        }
+        let branches = history.steps.len();
+        let mut largest = 0.0_f64;
+        for index in 0..self.strains.len() {
+            let nodes = self.gather(displacements, index);
+            let gradients = self.elements[index / self.mesh.columns].gradients.iter().enumerate();
+            for (point, gradients) in gradients.filter(|(point, _)| *point != CENTRE) {
+                let Ok((_, measure)) = self.deformation(&nodes, gradients) else {
+                    return Some(f64::NAN);
+                };
+                let strain = measure.value();
+                let first = (index * POINTS + point) * branches;
+                let past = &history.internal[first..first + branches];
+                let internal = past
+                    .iter()
+                    .zip(&history.fractions)
+                    .map(|(past, fraction)| [0, 1, 2].map(|i| past[i] + fraction * strain[i]));
+                for internal in internal.chain([[0.0; 3]]) {
+                    let lag = difference(&strain, &internal);
+                    largest = largest.max(self.rubber.invariant([&strain, &internal, &lag])?);
+                }
+            }
+        }
+        Some(largest)
     }
 
     /// Keeps the state at the end of a step and returns the energy in J/m that it turned into heat: `-∂ψ/∂m_i : dm_i`

@@ -9,6 +9,7 @@ use super::setup::{check_mesh, first_touch, height_range};
 use super::solution::{Counts, Energy, Sample, TransientSolution};
 use super::step::{Load, State, Stepper};
 use super::tangent::Tangent;
+use crate::fem::error::BeyondLaw;
 use crate::fem::mesh::Mesh;
 use crate::fem::profile::RigidProfile;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
@@ -215,7 +216,9 @@ impl TransientContact {
                 Err(failure) => {
                     course.counts.rejected_steps += 1;
                     limit = 0.5 * time_step;
-                    if limit < SMALLEST_STEP * phase.longest_step {
+                    // A shorter step leads to the same strain.
+                    let beyond = matches!(failure, StepFailure::BeyondLaw(_));
+                    if beyond || limit < SMALLEST_STEP * phase.longest_step {
                         return Err(TransientError::Stopped {
                             time: last.time,
                             pressure: last.pressure,
@@ -251,6 +254,10 @@ impl TransientContact {
             time_step,
             &mut course.counts.iterations,
         )?;
+        let largest = course.block.largest_invariant(&history, &state.nodes);
+        if let Some(beyond) = BeyondLaw::of(course.block.rheology(), largest) {
+            return Err(StepFailure::BeyondLaw(beyond));
+        }
         let heat = course.block.keep(&history, &state.nodes).map_err(|_| StepFailure::Inverted)?;
         let old = std::mem::replace(&mut course.state, state);
         let sample = course.record(&old, &contact, time, load, heat);

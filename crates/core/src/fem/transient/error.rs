@@ -2,6 +2,7 @@
 
 use super::solution::Sample;
 use crate::error_kind::{ErrorKind, HasKind};
+use crate::fem::error::BeyondLaw;
 
 /// Why a time step has no solution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -21,6 +22,9 @@ pub enum StepFailure {
     /// Uzawa did not converge.
     #[error("the contact pressures did not converge")]
     ContactNotConverged,
+    /// The law of the rubber does not hold in the solution.
+    #[error("{0}")]
+    BeyondLaw(BeyondLaw),
 }
 
 /// Why there is no transient solution.

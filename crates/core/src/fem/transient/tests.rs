@@ -13,6 +13,13 @@ use std::f64::consts::FRAC_PI_2;
 
 const PERIOD: f64 = 0.0625e-3;
 
+const LAWS: [Rheology; 4] = [
+    Rheology::NeoHookean,
+    Rheology::Linear,
+    Rheology::Yeoh { c2_over_c1: -0.1, c3_over_c1: 0.01 },
+    Rheology::ArrudaBoyce { locking_stretch: 2.0 },
+];
+
 /// A sine with its peak on a node.
 fn sine(amplitude: f64) -> Wave {
     Wave { wavelength: PERIOD, amplitude, phase: FRAC_PI_2 }
@@ -74,7 +81,7 @@ fn a_homogeneous_deformation_needs_only_edge_forces() {
     let (columns, skew) = (5, -0.4);
     let mut mesh = mesh(columns);
     mesh.skew = skew;
-    for rheology in [Rheology::NeoHookean, Rheology::Linear] {
+    for rheology in LAWS {
         let rubber = FiniteStrainRubber::new(&rubber(), rheology).unwrap();
         let block = TransientBlock::new(mesh.clone(), rubber);
         let history = block.history(FlowRule::Trapezoidal, 1e-3);
@@ -98,7 +105,7 @@ fn a_homogeneous_deformation_needs_only_edge_forces() {
 
 #[test]
 fn stiffness_is_the_derivative_of_the_forces() {
-    for rheology in [Rheology::NeoHookean, Rheology::Linear] {
+    for rheology in LAWS {
         let (block, nodes) = deformed(rheology);
         for rule in [FlowRule::Trapezoidal, FlowRule::Exponential] {
             let history = block.history(rule, 2e-3);

@@ -36,6 +36,13 @@ macro_rules! check_law {
 
 check_law!(neo_hookean, Rheology::NeoHookean);
 check_law!(linear, Rheology::Linear);
+check_law!(yeoh, YEOH);
+check_law!(yeoh_with_an_end, Rheology::Yeoh { c2_over_c1: -0.1, c3_over_c1: 1e-3 });
+check_law!(arruda_boyce, ARRUDA_BOYCE);
+
+/// Softer at first, stiffer later, without a maximum of the shear stress.
+const YEOH: Rheology = Rheology::Yeoh { c2_over_c1: -0.1, c3_over_c1: 0.01 };
+const ARRUDA_BOYCE: Rheology = Rheology::ArrudaBoyce { locking_stretch: 2.0 };
 
 fn rubber(rheology: Rheology) -> FiniteStrainRubber {
     FiniteStrainRubber::new(&Rubber::table_2_1(), rheology).unwrap()
@@ -164,15 +171,26 @@ fn the_tangent_in_products_is_the_tangent(rubber: &FiniteStrainRubber) {
             (rheology.metric(&strain).unwrap(), rheology.metric(&internal).unwrap());
         assert_eq!(rheology.volume(&strain), now);
         let ratio = now / then;
+        let tensors = [&strain, &internal, &difference(&strain, &internal)];
+        let Hardening { slope, curvature, by_strain, by_internal } = rubber.hardening(tensors);
         let shear = rubber.shear_tangent(&spring, &strain, &internal, fraction).unwrap();
         let volumetric = rubber.volumetric_tangent(&spring, &strain, &internal, fraction).unwrap();
         for (j, unit) in UNITS.iter().enumerate() {
             let (congruent, past) = (sandwich(&g, unit), sandwich(&g_i, unit));
             let growth = contract(&g, unit) - fraction * contract(&g_i, unit);
             let half = 0.5 * spring.volumetric;
+            let change = contract(&by_strain, unit) - fraction * contract(&by_internal, unit);
             for i in 0..3 {
-                let expected = spring.shear * (congruent[i] - fraction * past[i]);
-                assert_relative_eq!(shear[i][j], expected, max_relative = 1e-12);
+                let hardened = curvature * by_strain[i] * change;
+                let expected =
+                    spring.shear * (slope * (congruent[i] - fraction * past[i]) + hardened);
+                let round_off = 1e-12 * spring.shear * hardened.abs();
+                assert_relative_eq!(
+                    shear[i][j],
+                    expected,
+                    max_relative = 1e-12,
+                    epsilon = round_off
+                );
                 let expected = half * (ratio * growth * g[i] - (ratio - 1.0) * congruent[i]);
                 let round_off = 1e-12 * spring.volumetric;
                 assert_relative_eq!(
@@ -310,6 +328,102 @@ fn tiny_strains_keep_their_digits(rubber: &FiniteStrainRubber) {
     for i in 0..3 {
         assert_relative_eq!(shear[i], spring.shear * tiny[i], max_relative = 1e-12);
     }
+}
+
+/// All that the elements ask a law, at one state.
+fn answers(rubber: &FiniteStrainRubber, c: &Symmetric, past: &Symmetric) -> Vec<f64> {
+    let spring = rubber.branches[2];
+    let (strain, internal) = (measure(rubber, c).value(), measure(rubber, past).value());
+    let mut all = conjugate_stresses(rubber, &spring, &strain, &internal).concat();
+    for fraction in FRACTIONS {
+        let shear = rubber.shear_tangent(&spring, &strain, &internal, fraction).unwrap();
+        let volumetric = rubber.volumetric_tangent(&spring, &strain, &internal, fraction).unwrap();
+        all.extend([shear.concat(), volumetric.concat()].concat());
+    }
+    all.extend(rubber.driving_force(&spring, &strain, &internal).concat());
+    all
+}
+
+/// Without constants a law is neo-Hooke, to the last bit.
+#[test]
+fn laws_that_do_not_stiffen_are_neo_hooke() {
+    let neo_hooke = rubber(Rheology::NeoHookean);
+    for law in [
+        Rheology::Yeoh { c2_over_c1: 0.0, c3_over_c1: 0.0 },
+        Rheology::ArrudaBoyce { locking_stretch: 1e9 },
+    ] {
+        let stiffening = rubber(law);
+        for (c, past) in states() {
+            assert_eq!(answers(&stiffening, &c, &past), answers(&neo_hooke, &c, &past), "{law:?}");
+        }
+    }
+    let differs = rubber(ARRUDA_BOYCE);
+    let (c, past) = states()[2];
+    assert!(answers(&differs, &c, &past)[0] != answers(&neo_hooke, &c, &past)[0]);
+}
+
+/// Heat of branches along random paths that end where they began: never negative in its shear part, and what is put in
+/// less what is stored.
+#[test]
+fn work_on_random_paths_is_heat_or_stored() {
+    for law in [YEOH, ARRUDA_BOYCE, Rheology::NeoHookean] {
+        let rubber = rubber(law);
+        let spring = Spring { volumetric: 0.0, relaxation_time: 0.1, ..rubber.branches[2] };
+        for path in 0..5 {
+            let phase = |n: usize| ((n * (path + 3)) as f64 * 12.9898).sin() * 3.0;
+            // Shear and isochoric stretch, with no volumetric part to store or lose.
+            let strain = |t: f64| -> Symmetric {
+                let stretch = (0.8 * (t + phase(1)).sin() * (2.0 * t + phase(2)).cos()).exp();
+                let gamma = 1.5 * (3.0 * t + phase(3)).sin();
+                [stretch * stretch - 1.0, (gamma * gamma + 1.0) / (stretch * stretch) - 1.0, gamma]
+            };
+            let steps = 20_000;
+            let dt = std::f64::consts::TAU / f64::from(steps);
+            let mut internal = [0.0; 3];
+            let (mut work, mut heat) = (0.0, 0.0);
+            let start = rubber.energy(&spring, &strain(0.0), &internal);
+            for n in 0..steps {
+                let (now, next) = (strain(f64::from(n) * dt), strain(f64::from(n + 1) * dt));
+                let middle = [0, 1, 2].map(|i| 0.5 * (now[i] + next[i]));
+                let decay = (-0.5 * dt / spring.relaxation_time).exp();
+                let relaxed = |from: &Symmetric, to: &Symmetric| {
+                    [0, 1, 2].map(|i| to[i] + decay * (from[i] - to[i]))
+                };
+                let half = relaxed(&internal, &middle);
+                let [shear, _] = rubber.dissipation(&spring, &middle, &half);
+                assert!(shear >= 0.0, "{law:?}: {shear}");
+                heat += dt * shear;
+                let [stress, _] = conjugate_stresses(&rubber, &spring, &middle, &half);
+                work += 0.5 * contract(&stress, &difference(&next, &now));
+                internal = relaxed(&half, &middle);
+            }
+            let stored = rubber.energy(&spring, &strain(TAU_TIME), &internal) - start;
+            assert_relative_eq!(work, heat + stored, max_relative = 1e-3);
+        }
+    }
+}
+
+/// Duration of the random paths.
+const TAU_TIME: f64 = std::f64::consts::TAU;
+
+#[test]
+fn constants_that_are_none_are_named() {
+    let refusal = |law| {
+        let rubber = Rubber { finite_strain: law, ..Rubber::table_2_1() };
+        assert!(FiniteStrainRubber::new(&Rubber::table_2_1(), law).is_err());
+        rubber.validate().unwrap_err().to_string()
+    };
+    for stretch in [1.0, 0.0, -3.0, f64::NAN, f64::INFINITY] {
+        let error = refusal(Rheology::ArrudaBoyce { locking_stretch: stretch });
+        assert!(
+            error.contains(&format!("locking_stretch is {stretch}, it must be above 1")),
+            "{error}"
+        );
+    }
+    let error = refusal(Rheology::Yeoh { c2_over_c1: f64::NAN, c3_over_c1: 0.0 });
+    assert!(error.contains("c2_over_c1 is NaN"), "{error}");
+    let error = refusal(Rheology::Yeoh { c2_over_c1: 0.0, c3_over_c1: f64::INFINITY });
+    assert!(error.contains("c3_over_c1 is inf"), "{error}");
 }
 
 #[test]

@@ -23,23 +23,24 @@ impl Law for Hencky {
         Logarithm::new(strain).map(Measure::Logarithmic)
     }
 
-    fn energy(spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
+    fn energy(&self, spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
         let e = [0, 1, 2].map(|i| 0.5 * (strain[i] - internal[i]));
         spring.shear * contract(&e, &e) + 0.5 * spring.volumetric * contract(&IDENTITY, &e).powi(2)
     }
 
     #[inline]
-    fn shear_stress(spring: &Spring, [_, _, lag]: [&Symmetric; 3]) -> Symmetric {
+    fn shear_stress(&self, spring: &Spring, [_, _, lag]: [&Symmetric; 3]) -> Symmetric {
         lag.map(|lag| spring.shear * lag)
     }
 
     #[inline]
-    fn volumetric_stress(spring: &Spring, [_, _, lag]: [&Symmetric; 3]) -> Symmetric {
+    fn volumetric_stress(&self, spring: &Spring, [_, _, lag]: [&Symmetric; 3]) -> Symmetric {
         let half = 0.5 * spring.volumetric;
         IDENTITY.map(|unit| half * (lag[0] + lag[1]) * unit)
     }
 
     fn shear_tangent(
+        &self,
         spring: &Spring,
         _: &Symmetric,
         _: &Symmetric,
@@ -50,6 +51,7 @@ impl Law for Hencky {
     }
 
     fn volumetric_tangent(
+        &self,
         spring: &Spring,
         _: &Symmetric,
         _: &Symmetric,
@@ -70,10 +72,19 @@ impl Law for Hencky {
         1.0
     }
 
+    fn invariant(_: [&Symmetric; 3]) -> Option<f64> {
+        None
+    }
+
     /// Half the stress, since ψ depends on `m - m_i` alone and `T = 2 ∂ψ/∂m`.
-    fn driving_force(branch: &Spring, strain: &Symmetric, internal: &Symmetric) -> [Symmetric; 2] {
+    fn driving_force(
+        &self,
+        branch: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+    ) -> [Symmetric; 2] {
         let tensors = [strain, internal, &difference(strain, internal)];
-        [Self::shear_stress(branch, tensors), Self::volumetric_stress(branch, tensors)]
+        [self.shear_stress(branch, tensors), self.volumetric_stress(branch, tensors)]
             .map(|stress| stress.map(|t| 0.5 * t))
     }
 }
@@ -95,8 +106,8 @@ mod tests {
                 .unwrap();
         let strain = measure.value();
         let tensors = [&strain, &[0.0; 3], &strain];
-        let shear = measure.derivative(&Hencky::shear_stress(&spring, tensors));
-        let volumetric = measure.derivative(&Hencky::volumetric_stress(&spring, tensors));
+        let shear = measure.derivative(&Hencky.shear_stress(&spring, tensors));
+        let volumetric = measure.derivative(&Hencky.volumetric_stress(&spring, tensors));
         let volume = (stretches[0] * stretches[1]).ln();
         for (i, stretch) in stretches.iter().enumerate() {
             let kirchhoff = stretch * stretch * (shear[i] + volumetric[i]);

@@ -13,18 +13,21 @@
 //! conjugate to it gives the second Piola-Kirchhoff stress `S = T : dm/dC`.
 //!
 //! ```text
-//! neo-Hooke  m = C - 1   T = μ (C_i⁻¹ - C⁻¹) + Λ/2 (det C / det C_i - 1) C⁻¹,  C_i = 1 + m_i
-//! linear     m = ln C    T = μ (m - m_i) + Λ/2 tr(m - m_i) 1
+//! neo-Hooke           m = C - 1   T = μ (C_i⁻¹ - C⁻¹) + Λ/2 (det C / det C_i - 1) C⁻¹,  C_i = 1 + m_i
+//! Yeoh, Arruda-Boyce  m = C - 1   T = μ Φ' (C_i⁻¹ - C⁻¹) + Λ/2 (det C / det C_i - 1) C⁻¹
+//! linear              m = ln C    T = μ (m - m_i) + Λ/2 tr(m - m_i) 1
 //! ```
 //!
-//! The first is that of the thesis (2.2.15, 2.2.24, 2.2.28). The second is linear viscoelasticity
-//! in the logarithmic strain `E = ½ ln C` of Hencky. Both consist of a shear part (factor μ) and a volumetric
+//! The first is that of the thesis (2.2.15, 2.2.24, 2.2.28). The second and the third stiffen with the first invariant of
+//! the elastic part of the deformation (`invariant`). The last is linear viscoelasticity
+//! in the logarithmic strain `E = ½ ln C` of Hencky. All consist of a shear part (factor μ) and a volumetric
 //! part (factor Λ), so that elements can integrate them at different points.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | `law` | what a law states: energy, stress, tangent, driving force |
-//! | `neo_hookean`, `hencky` | the laws, one a file |
+//! | `rheology` | the choice of a law, with its constants |
+//! | `neo_hookean`, `invariant`, `hencky` | the laws: neo-Hooke; Yeoh and Arruda-Boyce; the linear one |
 //! | `checks` | the tests that every law passes |
 //! | `measure` | the strain measure of a law and its derivatives by `C` |
 //! | `logarithm` | `ln C` in closed form |
@@ -33,14 +36,19 @@
 #[cfg(test)]
 mod checks;
 mod hencky;
+mod invariant;
 mod law;
 mod logarithm;
 mod measure;
 mod neo_hookean;
+mod rheology;
 mod symmetric;
 
+pub use invariant::Stiffening;
+pub use law::Hardening;
 pub use logarithm::Logarithm;
 pub use measure::Measure;
+pub use rheology::{BadConstant, Rheology};
 pub use symmetric::{
     IDENTITY, Scalar, Symmetric, contract, determinant, difference, dilatation,
     dilatation_difference, inverse, one_plus, sandwich,
@@ -58,53 +66,17 @@ pub type Tangent = [[f64; 3]; 3];
 /// Unit changes of the three components of a strain.
 pub(crate) const UNITS: [Symmetric; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The law of a spring.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Rheology {
-    /// Compressible neo-Hooke on the elastic part of the deformation.
-    #[default]
-    NeoHookean,
-    /// Linear viscoelastic Kirchhoff stress in the logarithmic strain.
-    Linear,
-}
-
-/// Calls a function of the law that a rheology names.
+/// Calls a function of the law of a rubber.
 macro_rules! of_law {
-    ($rheology:expr, $function:ident($($argument:expr),*)) => {
-        match $rheology {
-            Rheology::NeoHookean => NeoHookean::$function($($argument),*),
-            Rheology::Linear => Hencky::$function($($argument),*),
+    ($rubber:expr, $function:ident($($argument:expr),*)) => {
+        match $rubber.rheology {
+            Rheology::NeoHookean => NeoHookean.$function($($argument),*),
+            Rheology::Linear => Hencky.$function($($argument),*),
+            Rheology::Yeoh { .. } | Rheology::ArrudaBoyce { .. } => {
+                Law::$function(&$rubber.stiffening, $($argument),*)
+            }
         }
     };
-}
-
-impl Rheology {
-    /// Whether the measure of this law is the strain `C - 1` itself.
-    pub(crate) fn is_in_green_strain(self) -> bool {
-        match self {
-            Self::NeoHookean => NeoHookean::IN_GREEN_STRAIN,
-            Self::Linear => Hencky::IN_GREEN_STRAIN,
-        }
-    }
-
-    /// The measure of this law at the strain `C - 1`; `None` where the law has none, since `C` is not
-    /// positive definite.
-    #[inline]
-    pub fn measure(self, strain: &Symmetric) -> Option<Measure> {
-        of_law!(self, measure(strain))
-    }
-
-    /// `G(m)` and `V(m)` of the tangent, see [`Law::metric`].
-    #[inline]
-    pub(crate) fn metric(self, measure: &Symmetric) -> Option<(Symmetric, f64)> {
-        of_law!(self, metric(measure))
-    }
-
-    /// `V(m)` of the tangent, see [`Law::metric`].
-    #[inline]
-    pub(crate) fn volume(self, measure: &Symmetric) -> f64 {
-        of_law!(self, volume(measure))
-    }
 }
 
 /// A spring with its relaxation time.
@@ -123,6 +95,8 @@ pub struct Spring {
 pub struct FiniteStrainRubber {
     /// The law of all springs.
     pub rheology: Rheology,
+    /// How their shear parts stiffen under it.
+    pub stiffening: Stiffening,
     /// The spring that never relaxes.
     pub equilibrium: Spring,
     /// The springs of the Maxwell branches.
@@ -133,10 +107,11 @@ impl FiniteStrainRubber {
     /// The rubber of linear viscoelasticity under a law for large strains.
     ///
     /// # Errors
-    /// Those of [`Rubber::validate`], and [`RubberError::PoissonRatio`] for `ν = 0.5`, whose `Λ`
-    /// is infinite.
+    /// Those of [`Rubber::validate`], [`RubberError::NotCompressible`] for a `ν` next to 0.5, where `Λ`
+    /// is infinite, and [`RubberError::Law`] for a constant of the law that is none.
     pub fn new(rubber: &Rubber, rheology: Rheology) -> Result<Self, RubberError> {
         rubber.validate()?;
+        rubber.check_law(rheology)?;
         let nu = rubber.poisson_ratio;
         if nu > MAX_POISSON_RATIO {
             return Err(RubberError::NotCompressible {
@@ -152,6 +127,7 @@ impl FiniteStrainRubber {
         };
         Ok(Self {
             rheology,
+            stiffening: rheology.stiffening(),
             equilibrium: spring(rubber.equilibrium_modulus, f64::INFINITY),
             branches: rubber
                 .branches
@@ -185,20 +161,20 @@ impl FiniteStrainRubber {
     /// Energy in Pa of one spring at the strain `m` with the internal tensor `m_i`, both in the
     /// measure of the law; the conjugate stress is `T = 2 ∂ψ/∂m`.
     pub fn energy(&self, spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
-        of_law!(self.rheology, energy(spring, strain, internal))
+        of_law!(self, energy(spring, strain, internal))
     }
 
     /// Shear part of the conjugate stress in Pa of one spring at the strain `m` with the internal tensor `m_i`; as accurate
     /// as their difference `lag = m - m_i`, which may be known better than by subtraction.
     #[inline]
     pub fn shear_stress(&self, spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric {
-        of_law!(self.rheology, shear_stress(spring, tensors))
+        of_law!(self, shear_stress(spring, tensors))
     }
 
     /// Volumetric part of the conjugate stress of one spring in Pa, as accurate.
     #[inline]
     pub fn volumetric_stress(&self, spring: &Spring, tensors: [&Symmetric; 3]) -> Symmetric {
-        of_law!(self.rheology, volumetric_stress(spring, tensors))
+        of_law!(self, volumetric_stress(spring, tensors))
     }
 
     /// Derivative of [`Self::shear_stress`] by the strain `m` if the internal tensor changes by a `fraction` of its change;
@@ -210,7 +186,7 @@ impl FiniteStrainRubber {
         internal: &Symmetric,
         fraction: f64,
     ) -> Option<Tangent> {
-        of_law!(self.rheology, shear_tangent(spring, strain, internal, fraction))
+        of_law!(self, shear_tangent(spring, strain, internal, fraction))
     }
 
     /// As [`Self::shear_tangent`], of [`Self::volumetric_stress`].
@@ -221,7 +197,22 @@ impl FiniteStrainRubber {
         internal: &Symmetric,
         fraction: f64,
     ) -> Option<Tangent> {
-        of_law!(self.rheology, volumetric_tangent(spring, strain, internal, fraction))
+        of_law!(self, volumetric_tangent(spring, strain, internal, fraction))
+    }
+
+    /// What the stiffening of the law adds to the tangent of a spring, from `m`, `m_i` and `m - m_i`.
+    #[inline]
+    pub(crate) fn hardening(&self, tensors: [&Symmetric; 3]) -> Hardening {
+        of_law!(self, hardening(tensors))
+    }
+
+    /// `I1 - 3 - 2 ln J` of the elastic part of the deformation of a spring, from `m`, `m_i` and `m - m_i`; `None` under
+    /// the linear law. The law holds up to [`Rheology::limit`].
+    pub fn invariant(&self, tensors: [&Symmetric; 3]) -> Option<f64> {
+        match self.rheology {
+            Rheology::Linear => Hencky::invariant(tensors),
+            _ => NeoHookean::invariant(tensors),
+        }
     }
 
     /// The force `-∂ψ/∂m_i` in Pa that drives the flow of a branch: its shear part and its
@@ -232,7 +223,7 @@ impl FiniteStrainRubber {
         strain: &Symmetric,
         internal: &Symmetric,
     ) -> [Symmetric; 2] {
-        of_law!(self.rheology, driving_force(branch, strain, internal))
+        of_law!(self, driving_force(branch, strain, internal))
     }
 
     /// Power in Pa/s that a branch turns into heat, `-∂ψ/∂m_i : dm_i/dt` with the flow rule:

@@ -10,6 +10,7 @@
 //! shear part is never negative. Its volumetric part is where the spring is compressed and sheared at once, `V < 1` and
 //! `tr X > 2`: of second order in both, and so below the shear part for all but large strains.
 
+use super::invariant::invariant;
 use super::law::Law;
 use super::measure::Measure;
 use super::symmetric::{
@@ -28,7 +29,7 @@ impl Law for NeoHookean {
         Some(Measure::Green(*strain))
     }
 
-    fn energy(spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
+    fn energy(&self, spring: &Spring, strain: &Symmetric, internal: &Symmetric) -> f64 {
         let (c, past) = (one_plus(strain), one_plus(internal));
         let stretch = contract(&inverse(&past), &c);
         let volume = determinant(&c) / determinant(&past);
@@ -37,7 +38,7 @@ impl Law for NeoHookean {
     }
 
     #[inline]
-    fn shear_stress(spring: &Spring, [strain, internal, lag]: [&Symmetric; 3]) -> Symmetric {
+    fn shear_stress(&self, spring: &Spring, [strain, internal, lag]: [&Symmetric; 3]) -> Symmetric {
         // C_i⁻¹ - C⁻¹ = adj C_i (det C - det C_i) / (det C det C_i)
         //               + (adj C_i - adj C) / det C
         let (volume, past) = (1.0 + dilatation(strain), 1.0 + dilatation(internal));
@@ -48,7 +49,11 @@ impl Law for NeoHookean {
     }
 
     #[inline]
-    fn volumetric_stress(spring: &Spring, [strain, internal, lag]: [&Symmetric; 3]) -> Symmetric {
+    fn volumetric_stress(
+        &self,
+        spring: &Spring,
+        [strain, internal, lag]: [&Symmetric; 3],
+    ) -> Symmetric {
         let half = 0.5 * spring.volumetric;
         let past = 1.0 + dilatation(internal);
         let pressure = half * dilatation_difference(strain, internal, lag) / past;
@@ -59,6 +64,7 @@ impl Law for NeoHookean {
 
     /// `δT = μ (C⁻¹ δC C⁻¹ - C_i⁻¹ δC_i C_i⁻¹)`.
     fn shear_tangent(
+        &self,
         spring: &Spring,
         strain: &Symmetric,
         internal: &Symmetric,
@@ -79,6 +85,7 @@ impl Law for NeoHookean {
 
     /// `δT = Λ/2 (V (C⁻¹ : δC - C_i⁻¹ : δC_i) C⁻¹ - (V - 1) C⁻¹ δC C⁻¹)`.
     fn volumetric_tangent(
+        &self,
         spring: &Spring,
         strain: &Symmetric,
         internal: &Symmetric,
@@ -116,8 +123,17 @@ impl Law for NeoHookean {
         1.0 + dilatation(measure)
     }
 
+    fn invariant(tensors: [&Symmetric; 3]) -> Option<f64> {
+        Some(invariant(tensors))
+    }
+
     /// `μ/2 (C_i⁻¹ C C_i⁻¹ - C_i⁻¹)` and `Λ/4 (V - 1) C_i⁻¹`.
-    fn driving_force(branch: &Spring, strain: &Symmetric, internal: &Symmetric) -> [Symmetric; 2] {
+    fn driving_force(
+        &self,
+        branch: &Spring,
+        strain: &Symmetric,
+        internal: &Symmetric,
+    ) -> [Symmetric; 2] {
         let (c, past) = (one_plus(strain), one_plus(internal));
         let g = inverse(&past);
         let pulled = sandwich(&g, &c);
@@ -149,10 +165,10 @@ mod tests {
         for gamma in [1e-3, 0.3, 2.0] {
             // F = [[1, γ], [0, 1]], and σ = F S Fᵀ has the shear component S_xz + γ S_zz.
             let strain = [0.0, gamma * gamma, gamma];
-            let stress = NeoHookean::shear_stress(&spring, [&strain, &[0.0; 3], &strain]);
+            let stress = NeoHookean.shear_stress(&spring, [&strain, &[0.0; 3], &strain]);
             let shear = stress[2] + gamma * stress[1];
             assert_relative_eq!(shear, spring.shear * gamma, max_relative = 1e-12);
-            let volumetric = NeoHookean::volumetric_stress(&spring, [&strain, &[0.0; 3], &strain]);
+            let volumetric = NeoHookean.volumetric_stress(&spring, [&strain, &[0.0; 3], &strain]);
             assert!(volumetric.iter().all(|t| t.abs() < 1e-12 * spring.volumetric));
         }
     }

@@ -218,6 +218,7 @@ impl MasterCurve {
             equilibrium_modulus: self.equilibrium_modulus.value,
             branches: self.terms.iter().map(branch).collect(),
             poisson_ratio,
+            finite_strain: Default::default(),
         };
         let certain = || self.shifts.iter().filter(|shift| !shift.uncertain);
         let temperatures = || certain().map(|shift| shift.temperature_c);

@@ -52,6 +52,7 @@ fn frictions_of_waves_in_full_contact_add_up() {
         equilibrium_modulus: 2e6,
         branches: vec![MaxwellBranch { modulus: 2e10, relaxation_time: 1e-4 }],
         poisson_ratio: 0.45,
+        finite_strain: Default::default(),
     };
     // Slow convergence with the fourth power of points a wave: 2e-5 of that of (3, 2).
     let points = [180, 150];
@@ -78,6 +79,7 @@ fn an_isotropic_surface_has_more_friction_than_its_cuts_by_the_ratio_of_theory()
         equilibrium_modulus: 1e6,
         branches: vec![MaxwellBranch { modulus: 1e6, relaxation_time: 1e-9 }],
         poisson_ratio: 0.5,
+        finite_strain: Default::default(),
     };
     let friction = |list: &[(f64, f64, f64, f64)], points: [usize; 2]| {
         let heights = waves(points, list);

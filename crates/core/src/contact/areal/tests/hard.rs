@@ -58,6 +58,7 @@ fn a_modulus_ratio_of_ten_thousand_converges_at_all_speeds() {
         equilibrium_modulus: 1e6,
         branches: vec![MaxwellBranch { modulus: 1e10, relaxation_time: 1e-4 }],
         poisson_ratio: 0.5,
+        finite_strain: Default::default(),
     };
     let points = [64, 64];
     let heights = rough(points, 6, 0.3);
