@@ -14,7 +14,7 @@ use crate::fem::error::{FemError, PathEnd};
 use crate::fem::steady::SteadyContact;
 use crate::fem::steady::solution::SteadySolution;
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -24,13 +24,21 @@ use std::time::Instant;
 
 /// What determines the solves of a solver for a rubber, to which its caller adds what it solves. The name of the
 /// rubber is no part of it; the revision of the solver is, which is raised when the same problem gives another number.
-pub(super) fn problem(solver: &str, revision: u32, rubber: &Rubber) -> Value {
-    json!({
-        "solver": [solver, revision],
-        "equilibrium_modulus": rubber.equilibrium_modulus,
-        "branches": rubber.branches,
-        "poisson_ratio": rubber.poisson_ratio,
-    })
+pub(super) fn problem(solver: &str, revision: u32, rubber: &RubberModel) -> Value {
+    match rubber {
+        RubberModel::Maxwell(rubber) => json!({
+            "solver": [solver, revision],
+            "equilibrium_modulus": rubber.equilibrium_modulus,
+            "branches": rubber.branches,
+            "poisson_ratio": rubber.poisson_ratio,
+        }),
+        RubberModel::Table(table) => json!({
+            "solver": [solver, revision],
+            "moduli": table.points(),
+            "extrapolation": table.extrapolation(),
+            "poisson_ratio": table.poisson_ratio(),
+        }),
+    }
 }
 
 /// The kept solves of one problem.
@@ -191,10 +199,10 @@ pub(crate) trait SolveTask: Sync + Sized {
 
     /// Digest of what all its solves have in common, under which they are kept; tasks of one problem belong into one
     /// shard of a sweep.
-    fn problem(&self, parameters: &Self::Parameters, rubber: &Rubber) -> Digest;
+    fn problem(&self, parameters: &Self::Parameters, rubber: &RubberModel) -> Digest;
 
     /// Digest of all that determines which solves it asks for.
-    fn key(&self, parameters: &Self::Parameters, rubber: &Rubber) -> Digest;
+    fn key(&self, parameters: &Self::Parameters, rubber: &RubberModel) -> Digest;
 
     /// What it is, for messages: `bem, 8 waves, realisation 3, 10 mm/s`.
     fn name(&self) -> String;
@@ -206,7 +214,7 @@ pub(crate) trait SolveTask: Sync + Sized {
     fn solve(
         &self,
         parameters: &Self::Parameters,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<Self::Output, StageError>;
@@ -218,7 +226,7 @@ pub(crate) trait SolveTask: Sync + Sized {
     fn is_finished(
         &self,
         parameters: &Self::Parameters,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
     ) -> Result<bool, ArtifactError> {
         let solves = store.problem(&self.problem(parameters, rubber))?;
@@ -233,7 +241,7 @@ pub(crate) trait SolveTask: Sync + Sized {
 pub(crate) fn unfinished<T: SolveTask>(
     tasks: Vec<T>,
     parameters: &T::Parameters,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     store: &SolveStore,
 ) -> Result<Vec<T>, ArtifactError> {
     let mut missing = Vec::new();

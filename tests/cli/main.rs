@@ -17,6 +17,7 @@ mod report;
 mod road;
 mod rubber;
 mod rubber_sweeps;
+mod rubber_tables;
 mod solve;
 mod solve_areal;
 mod solve_fem;

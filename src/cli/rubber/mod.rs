@@ -1,5 +1,7 @@
 //! `asperity rubber`: a rubber file from measured moduli.
 
+mod payne;
+mod show;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -51,6 +53,8 @@ const NO_PLATEAU: f64 = 1.2;
 #[derive(Debug, Subcommand)]
 pub(super) enum Rubber {
     Fit(Fit),
+    Payne(payne::PayneFit),
+    Summary(show::Show),
 }
 
 /// Which modulus was measured.
@@ -164,6 +168,8 @@ impl Rubber {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         match self {
             Self::Fit(fit) => fit.run(quiet),
+            Self::Payne(payne) => payne.run(quiet),
+            Self::Summary(show) => show.run(quiet),
         }
     }
 }

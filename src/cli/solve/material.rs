@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::cli::{CliError, values};
 use asperity::rubber::{
-    FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
+    FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, RubberModel, read_rubber_data,
 };
 
 /// The rubber.
@@ -57,7 +57,8 @@ impl MaterialOptions {
     /// The rubber, if it can be solved at finite deformation.
     pub(super) fn material_at_finite_deformation(&self) -> Result<Material, CliError> {
         let material = self.material()?;
-        match FiniteStrainRubber::new(material.rubber(), Rheology::NeoHookean) {
+        let rubber = material.rubber().maxwell().map_err(|error| self.named(error))?;
+        match FiniteStrainRubber::new(rubber, Rheology::NeoHookean) {
             Ok(_) => Ok(material),
             Err(error) => Err(self.named(error)),
         }
@@ -78,7 +79,7 @@ impl MaterialOptions {
 }
 
 impl Material {
-    pub(super) fn rubber(&self) -> &Rubber {
+    pub(super) fn rubber(&self) -> &RubberModel {
         &self.data.rubber
     }
 

@@ -8,7 +8,7 @@ use crate::contact::curve::{CurveError, friction_curve};
 use crate::contact::refine::{AREAL, LEAST_CONTACT_POINTS, OnGrid, on_grid};
 use crate::contact::{CurvePoint, CurveValue};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use crate::stages::SolveError;
 use crate::stages::bem::{Given, solved};
 use crate::stages::kept::{self, Kept};
@@ -47,7 +47,7 @@ pub(super) struct Curve<'a> {
 /// The contact on the grids that it is solved on.
 struct Grids<'a> {
     task: &'a Task,
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     thickness: Option<f64>,
     /// Points of the finest grid.
     points: [usize; 2],
@@ -64,7 +64,7 @@ type Computed = (Vec<(Given, CurveValue)>, Vec<ArrayDataset>);
 impl<'a> Curve<'a> {
     pub fn new(
         sweep: &Sweep,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         task: &'a Task,
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
@@ -271,7 +271,7 @@ impl Grids<'_> {
 }
 
 /// What all solves of a curve have in common.
-pub(super) fn problem(parameters: &Areal, rubber: &Rubber, task: &Task) -> Value {
+pub(super) fn problem(parameters: &Areal, rubber: &RubberModel, task: &Task) -> Value {
     let mut problem = kept::problem("areal", SOLVER_REVISION, rubber);
     let map = &task.surface.map;
     let bytes: Vec<u8> = map.heights.iter().flat_map(|z| z.to_le_bytes()).collect();

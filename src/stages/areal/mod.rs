@@ -19,7 +19,7 @@ use crate::artifact::{ArrayDataset, ArtifactError, RunView, SolveStore, Storage}
 use crate::contact::areal::memory_bytes;
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use curve::CurveResult;
 pub use rows::{
     AREAL_CURVES, AREAL_FIELDS, AREAL_SOLVES, ArealCurveRow, ArealSolveRow, areal_fields_schema,
@@ -150,7 +150,7 @@ impl Areal {
 pub fn run(
     parameters: &Areal,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     store: &SolveStore,
     context: &mut Context,
@@ -194,7 +194,7 @@ fn tasks(parameters: &Areal, bem: &Bem, surfaces: &[ArealSurface]) -> Vec<Task> 
 pub fn missing(
     sweep: &Sweep,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[ArealSurface],
     store: &SolveStore,
 ) -> Result<Vec<Task>, ArtifactError> {

@@ -39,7 +39,7 @@ use super::{Stage, StageError};
 use crate::artifact::RunView;
 use crate::numerics::statistics::MeanEstimate;
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::scans::file::MapLines;
 use crate::stages::realise::SurfaceKind;
 use accuracy::missed;
@@ -215,7 +215,7 @@ pub struct Corrected {
 pub fn run(
     parameters: &Tables,
     models: Models,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {

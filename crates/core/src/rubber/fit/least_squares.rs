@@ -14,7 +14,7 @@ const CONVERGED_OFFSET: f64 = 1e-3;
 pub(super) const ROUND_OFF: f64 = 1e-9;
 
 /// Residuals that depend on parameters.
-pub(super) trait LeastSquares {
+pub(in crate::rubber) trait LeastSquares {
     /// The residuals.
     fn residuals(&self, parameters: &DVector<f64>) -> DVector<f64>;
     /// Their derivatives, a row for each residual.
@@ -23,7 +23,7 @@ pub(super) trait LeastSquares {
 
 /// Where a minimisation ended.
 #[derive(Debug, Clone)]
-pub(super) struct Minimum {
+pub(in crate::rubber) struct Minimum {
     pub parameters: DVector<f64>,
     /// Root mean square of the residuals.
     pub rms: f64,
@@ -74,7 +74,10 @@ impl<P: LeastSquares> Hessian for MeanSquare<'_, P> {
 }
 
 /// Minimises the sum of squares from a start; `None` if a residual is not a number.
-pub(super) fn minimise<P: LeastSquares>(problem: &P, start: DVector<f64>) -> Option<Minimum> {
+pub(in crate::rubber) fn minimise<P: LeastSquares>(
+    problem: &P,
+    start: DVector<f64>,
+) -> Option<Minimum> {
     let steihaug = Steihaug::new().with_epsilon(1e-12).ok()?;
     let run = Executor::new(MeanSquare(problem), TrustRegion::new(steihaug))
         .configure(|state| state.param(start).max_iters(MAXIMUM_ITERATIONS).target_cost(0.0))

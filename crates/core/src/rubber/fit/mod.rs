@@ -47,6 +47,8 @@ pub use result::{
 };
 pub use sweep::{FitError, FitOptions, GivenShift, ModulusKind, Sweep, SweepPoint, VerticalChoice};
 
+pub(super) use least_squares::{LeastSquares, Minimum, minimise};
+
 use chain::Chain;
 use model::{Datum, Prony};
 use terms::Fitted;
