@@ -12,8 +12,6 @@ mod document;
 mod entry;
 mod error;
 mod file;
-#[cfg(test)]
-mod table_tests;
 mod tables;
 
 pub use asperity_core::rubber::*;

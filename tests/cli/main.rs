@@ -16,6 +16,7 @@ mod oversights;
 mod report;
 mod road;
 mod rubber;
+mod rubber_files;
 mod rubber_sweeps;
 mod rubber_tables;
 mod solve;

@@ -25,7 +25,8 @@ fn table(folder: &Path, keys: &str) -> String {
 }
 
 fn friction(options: &str) -> f64 {
-    let command = format!("solve bem --wave 0.0625:0.01867 --pressure 3.3 --speed 10 {options} --json");
+    let command =
+        format!("solve bem --wave 0.0625:0.01867 --pressure 3.3 --speed 10 {options} --json");
     asperity(&command).json()["friction_coefficient"].as_f64().unwrap()
 }
 
@@ -103,7 +104,8 @@ fn summaries_tell_of_moduli_and_of_rows_that_are_not_causal() {
     let bad = curve.replace(row, &format!("{},{},{loss}", cells[0], cells[1]));
     fs::write(folder.path().join("curve.csv"), bad).unwrap();
     let outcome = asperity(&format!("rubber summary {rubber}"));
-    let warned = outcome.stderr.contains("Kramers-Kronig") && outcome.stderr.contains("1.000e3 Hz (-");
+    let warned =
+        outcome.stderr.contains("Kramers-Kronig") && outcome.stderr.contains("1.000e3 Hz (-");
     assert!(warned, "{}", outcome.stderr);
 }
 
@@ -122,7 +124,8 @@ fn strain_sweeps_become_a_section_of_a_rubber_file() {
         }
     }
     fs::write(path("strain.csv"), text).unwrap();
-    let fit = |options: &str| asperity_at(&format!("rubber payne {{}} {options}"), &path("strain.csv"));
+    let fit =
+        |options: &str| asperity_at(&format!("rubber payne {{}} {options}"), &path("strain.csv"));
     assert!(fit("--strain-kind elongation").error(2).contains("strain_percent"));
     let section = path("payne.toml");
     let options = format!(
@@ -133,7 +136,13 @@ fn strain_sweeps_become_a_section_of_a_rubber_file() {
     for row in json.as_array().unwrap() {
         let number = |key: &str| row[key].as_f64().unwrap();
         // The file has seven digits.
-        for (key, exact) in [("critical_strain", 0.015), ("exponent", 0.6), ("storage_limit", 0.2), ("loss_limit", 0.3), ("loss_peak", 0.25)] {
+        for (key, exact) in [
+            ("critical_strain", 0.015),
+            ("exponent", 0.6),
+            ("storage_limit", 0.2),
+            ("loss_limit", 0.3),
+            ("loss_peak", 0.25),
+        ] {
             approx::assert_relative_eq!(number(key), exact, max_relative = 1e-3);
         }
         assert!(number("storage_rms") < 1e-5 && number("own_loss_rms") > 0.05, "{row}");

@@ -51,7 +51,7 @@ enum Law {
 /// measured and by Kraus' law. docs/rubber_data.md explains both.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub(super) struct PayneFit {
+pub(in crate::cli) struct PayneFit {
     /// Strain sweeps: CSV, text of an instrument, or .xlsx.
     #[arg(value_name = "SWEEP")]
     sweep: PathBuf,
@@ -99,7 +99,7 @@ struct Row {
 }
 
 impl PayneFit {
-    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+    pub(in crate::cli) fn run(&self, quiet: bool) -> Result<(), CliError> {
         refuse_existing(self.to.as_deref(), self.force)?;
         let unit = self.strain_unit.map(|unit| match unit {
             Unit::Percent => StrainUnit::Percent,

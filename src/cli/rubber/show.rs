@@ -31,7 +31,7 @@ const MOST_ROWS: i32 = 12;
 /// Show what a rubber file holds: model, moduli, shift with temperature, softening with strain, and whether a table is causal.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-pub(super) struct Show {
+pub(in crate::cli) struct Show {
     /// Rubber file.
     #[arg(value_name = "RUBBER.TOML")]
     rubber: PathBuf,
@@ -74,7 +74,7 @@ struct Softening {
 }
 
 impl Show {
-    pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
+    pub(in crate::cli) fn run(&self, quiet: bool) -> Result<(), CliError> {
         let oddities = read_rubber_data(&self.rubber)?.oddities();
         let data = read_rubber_at(&self.rubber, self.temperature_c)?;
         let of_strain = data.payne.as_ref().zip(data.temperature_c());

@@ -14,8 +14,8 @@ const ONE: f64 = 1e-5;
 /// ([`CubicHermite::monotone_parabolas`]), T absolute.
 ///
 /// Over `1/T` an Arrhenius law is a straight line, so its factors come back to round-off from any table; those of a WLF law
-/// (c1 = 8.86, c2 = 101.6 K) come back from a table with steps of 10 K to 0.004 decades and better more than 50 K above the
-/// pole. Only differences of logarithms count, so the table may be about any reference temperature.
+/// (c1 = 8.86, c2 = 101.6 K about 20 °C) come back from a table with steps of 10 K from -30 to 80 °C within 0.017 decades, over
+/// T itself within 0.028. Only differences of logarithms count, so the table may be about any reference temperature.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShiftTable {
     factors: Vec<GivenShift>,
@@ -129,11 +129,13 @@ mod tests {
         let arrhenius = ShiftLaw::Arrhenius { activation_energy_kj_mol: 90.0 };
         let wlf = ShiftLaw::Wlf { c1: 8.86, c2_k: 101.6 };
         // Round-off for a straight line; the stated accuracy for WLF.
-        for (law, accuracy) in [(arrhenius, 1e-12), (wlf, 0.004)] {
+        for (law, accuracy) in [(arrhenius, 1e-12), (wlf, 0.017)] {
             let table = table(&law, &temperatures);
             for k in -60..=160 {
                 let (t, r) = (0.5 * f64::from(k), 31.7);
-                let miss = table.log10_shift(t, r) - law.log10_shift(t, r);
+                // The coefficients of WLF are about 20 °C.
+                let exact = law.log10_shift(t, 20.0) - law.log10_shift(r, 20.0);
+                let miss = table.log10_shift(t, r) - exact;
                 assert!(miss.abs() < accuracy, "{}: {t} °C {miss}", law.name());
             }
         }

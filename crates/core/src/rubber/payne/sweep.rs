@@ -8,8 +8,10 @@ const FEWEST: usize = 5;
 const SAME: f64 = 1e-6;
 /// The modulus at vanishing strain is the median of the points up to this multiple of the smallest strain: half a decade.
 const PLATEAU: f64 = 3.2;
-/// A modulus further from the median of its neighbours than this, relative, is left out, unless all scatter as much.
-const OUTLIER: f64 = 0.05;
+/// A modulus further from its neighbours than this, relative, is left out, unless all scatter as much.
+const OUTLIER: f64 = 0.1;
+/// Multiple of the limit at an end, where lines are extrapolated.
+const AT_AN_END: f64 = 2.0;
 /// Multiple of the median distance, in standard deviations of a normal distribution, beyond which a point is an outlier.
 const OUTLIER_SCATTER: f64 = 5.0 * 1.4826;
 
@@ -88,41 +90,44 @@ impl StrainSweep {
     }
 }
 
-/// Which points lie off the median of the five around them (Hampel's identifier, J. Am. Stat. Assoc. 69, 383, 1974,
-/// doi:10.1080/01621459.1974.10482962) in either modulus. At an end the five are those next to it, with the trend over
-/// them taken off.
+/// Which points lie off the lines through their neighbours in either modulus, by more than the scatter of all (in the manner
+/// of Hampel's identifier, J. Am. Stat. Assoc. 69, 383, 1974, doi:10.1080/01621459.1974.10482962).
 fn outliers(points: &[StrainPoint]) -> Vec<bool> {
-    let distances = |of: fn(&StrainPoint) -> f64| -> Vec<f64> {
-        let ln: Vec<f64> = points.iter().map(|point| of(point).ln()).collect();
-        (0..ln.len()).map(|k| distance(&ln, k)).collect()
+    let x: Vec<f64> = points.iter().map(|point| point.strain.ln()).collect();
+    let beyond = |of: fn(&StrainPoint) -> f64| {
+        let y: Vec<f64> = points.iter().map(|point| of(point).ln()).collect();
+        let distances: Vec<f64> = (0..y.len()).map(|k| distance(&x, &y, k)).collect();
+        let limit = OUTLIER.max(OUTLIER_SCATTER * median(distances.clone()));
+        let is_beyond = |(k, distance): (usize, &f64)| {
+            let at_an_end = k == 0 || k + 1 == x.len();
+            *distance > if at_an_end { AT_AN_END * limit } else { limit }
+        };
+        distances.iter().enumerate().map(is_beyond).collect::<Vec<bool>>()
     };
-    let beyond = |distances: &[f64]| {
-        let scatter = median(distances.iter().map(|distance| distance.abs()).collect());
-        let limit = OUTLIER.max(OUTLIER_SCATTER * scatter);
-        distances.iter().map(|distance| distance.abs() > limit).collect::<Vec<bool>>()
-    };
-    let [storage, loss] = [
-        beyond(&distances(|point| point.storage_modulus)),
-        beyond(&distances(|point| point.loss_modulus)),
-    ];
+    let storage = beyond(|point| point.storage_modulus);
+    let loss = beyond(|point| point.loss_modulus);
     storage.iter().zip(loss).map(|(a, b)| *a || b).collect()
 }
 
-/// Distance of a value from the line through its neighbours, median over the pairs of the two nearest on either side; at an
-/// end from the line through pairs on the one side that there is.
-fn distance(values: &[f64], k: usize) -> f64 {
-    let value = |offset: isize| {
-        let index = k.checked_add_signed(offset)?;
-        values.get(index).copied()
+/// Distance of a value from the median of the lines through pairs of neighbours; one outlier among them is in less than half
+/// of the pairs. At an end the neighbours are the five on the one side that there is.
+fn distance(x: &[f64], y: &[f64], k: usize) -> f64 {
+    const AROUND: [(isize, isize); 10] =
+        [(-1, 1), (-2, 2), (-2, -1), (1, 2), (-3, -1), (1, 3), (-1, 2), (-2, 1), (-3, 2), (-2, 3)];
+    const BESIDE: [(isize, isize); 10] =
+        [(1, 2), (1, 3), (1, 4), (1, 5), (2, 3), (2, 4), (2, 5), (3, 4), (3, 5), (4, 5)];
+    let pairs = match k {
+        0 => BESIDE,
+        _ if k + 1 == x.len() => BESIDE.map(|(a, b)| (-a, -b)),
+        _ => AROUND,
     };
-    let mut predicted = Vec::new();
-    for (a, b) in [(-1, 1), (-2, 2), (-2, -1), (1, 2), (-3, -1), (1, 3), (-1, 2), (-2, 1)] {
-        if let (Some(left), Some(right)) = (value(a), value(b)) {
-            let part = -(a as f64) / (b - a) as f64;
-            predicted.push(left + part * (right - left));
-        }
-    }
-    if predicted.is_empty() { 0.0 } else { values[k] - median(predicted) }
+    let index = |offset: isize| k.checked_add_signed(offset).filter(|index| *index < x.len());
+    let line = |(a, b): (isize, isize)| {
+        let (a, b) = (index(a)?, index(b)?);
+        Some(y[a] + (x[k] - x[a]) / (x[b] - x[a]) * (y[b] - y[a]))
+    };
+    let predicted: Vec<f64> = pairs.into_iter().filter_map(line).collect();
+    if predicted.is_empty() { 0.0 } else { (y[k] - median(predicted)).abs() }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -70,9 +70,9 @@ fn exact_sweeps_give_their_law() {
     ] {
         approx::assert_relative_eq!(value, exact, max_relative = 1e-6);
     }
-    // Kraus' own law cannot fall below 1, where the sweep has a quarter.
+    // The loss factor of Kraus' own law cannot fall below 1, where the sweep has a quarter: the fit spoils both moduli.
     let own = found.rms_of_own_law.unwrap();
-    assert!(own[1] > 0.1, "{own:?}");
+    assert!(own[0].max(own[1]) > 0.1, "{own:?}");
     let kraus = Kraus { loss_limit: 1.0, ..LAW };
     let found = Kraus::fit(&sweep(&law_of(kraus), 20.0)).unwrap();
     assert!(found.rms_of_own_law.unwrap().iter().all(|rms| *rms < 1e-8), "{found:?}");
@@ -83,7 +83,8 @@ fn exact_sweeps_give_their_law() {
 fn the_table_meets_its_sweep() {
     let law = law_of(LAW);
     let found = PayneTable::fit(&sweep(&law, 20.0)).unwrap();
-    assert!(found.left_out.is_empty() && found.monotone_rms < 1e-15, "{found:?}");
+    // The two smallest strains are stiffer than the median of the half decade and count as at rest.
+    assert!(found.left_out.is_empty() && found.monotone_rms < 1e-3, "{found:?}");
     let table = Payne::new(vec![(None, PayneCurve::Table(found.table))]).unwrap().at(None);
     for strain in strains() {
         // The modulus at rest is the median over half a decade, which is softer by f(1.8e-4) there.
