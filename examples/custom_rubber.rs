@@ -26,7 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let sweep = Sweep { temperature_c: None, points: (-8..=32).map(measure).collect() };
     let fit = fit_sweeps(&[sweep], &FitOptions::default())?;
-    let rubber = fit.rubber("fractional", 0.49).rubber;
+    let data = fit.rubber("fractional", 0.49);
+    let rubber = data.rubber.maxwell()?;
     println!("{} Maxwell branches\n", rubber.branches.len());
 
     let profile = [Wave { wavelength: WAVELENGTH_M, amplitude: 1e-5, phase: 0.0 }];
@@ -35,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for speed in [1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0] {
         let frequency = speed / WAVELENGTH_M;
         let modulus = rubber.complex_modulus(TAU * frequency);
-        let contact = SlidingContact::new(&rubber, speed, WAVELENGTH_M, &heights)?.solve(1e6)?;
+        let contact = SlidingContact::new(rubber, speed, WAVELENGTH_M, &heights)?.solve(1e6)?;
         let (loss, friction) = (modulus.im / modulus.re, contact.friction_coefficient);
         println!("{:10} {frequency:10} {loss:9.4} {friction:9.4}", 1e3 * speed);
     }

@@ -30,7 +30,7 @@ use crate::numerics::Interrupt;
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages;
 use crate::stages::areal;
 use crate::stages::bem::{self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, Worth};
@@ -292,7 +292,7 @@ fn most_windows(chain: &Chain) -> usize {
 
 /// What the trial gave.
 struct Trial {
-    rubber: Rubber,
+    rubber: RubberModel,
     surfaces: Vec<Surface>,
     curves: Vec<CurveRow>,
     solves: Vec<SolveRow>,

@@ -1,7 +1,7 @@
 //! Which model each scale of a surface gets, and why.
 
 use crate::multiscale::scales::octaves;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use crate::stages::micro::{Micro, Parting};
 use crate::surface::{SineScale, Wave};
 use crate::units::Units;
@@ -42,7 +42,7 @@ pub struct ScaleForecast {
 
 /// The scales of a profile under the mean pressure in Pa and contact area fraction of `contact`.
 pub(super) fn scales(
-    rubber: &Rubber,
+    rubber: &RubberModel,
     profile: &[Wave],
     speed: f64,
     contact: [f64; 2],
@@ -123,7 +123,7 @@ mod tests {
         let wave = |wavelength, amplitude| Wave { wavelength, amplitude, phase: 0.0 };
         // Slopes 1.33, 0.94 and none.
         let profile = [wave(6.25e-5, 1.867e-5), wave(1.25e-4, 2.648e-5), wave(2.5e-4, 0.0)];
-        let rubber = Rubber::elastic(3e6, 0.5);
+        let rubber = RubberModel::from(crate::rubber::Rubber::elastic(3e6, 0.5));
         let scales = scales(&rubber, &profile, 0.01, [1e5, 0.1], Some(1.0));
         let models: Vec<ScaleModel> = scales.iter().map(|scale| scale.model).collect();
         assert_eq!(

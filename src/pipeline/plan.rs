@@ -3,7 +3,7 @@
 use super::{PipelineError, Selection};
 use crate::artifact::{ArtifactError, Identity, RunView};
 use crate::recipe::Recipe;
-use crate::rubber::{FiniteStrainRubber, Rubber, RubberData};
+use crate::rubber::{FiniteStrainRubber, RubberData, RubberModel};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
     Job, Planned, Request, Stage, StageError, bem, fem, ingest, micro, multilevel, sinusoid, tables,
@@ -140,8 +140,9 @@ fn request<'a>(
         }
         Job::Sinusoid(study) => {
             let rubber = sinusoid::rubber(study).map_err(of(sinusoid::STAGE))?;
-            check_finite_strain(&rubber, &study.rubber).map_err(of(sinusoid::STAGE))?;
-            RubberData::from(rubber)
+            let material = RubberData::from(rubber);
+            check_finite_strain(&material.rubber, &study.rubber).map_err(of(sinusoid::STAGE))?;
+            material
         }
     };
     Ok(Request { job, scans, material, published })
@@ -149,7 +150,10 @@ fn request<'a>(
 
 /// Fails for a rubber that the half-space takes and finite elements do not, before the half-space
 /// is solved for nothing.
-fn check_finite_strain(rubber: &Rubber, file: &Path) -> Result<(), StageError> {
+fn check_finite_strain(rubber: &RubberModel, file: &Path) -> Result<(), StageError> {
+    let rubber = rubber
+        .maxwell()
+        .map_err(|source| StageError::NoRelaxationTimes { path: file.to_path_buf(), source })?;
     match FiniteStrainRubber::new(rubber, rubber.finite_strain) {
         Ok(_) => Ok(()),
         Err(source) => {

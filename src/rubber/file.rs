@@ -32,219 +32,55 @@
 //! c2_over_c1 = -0.1
 //! c3_over_c1 = 0.01
 //! ```
+//!
+//! In place of `equilibrium_modulus_mpa` and `[[branches]]` a table of measured moduli, in place of a law measured shift
+//! factors; files are beside the rubber file:
+//!
+//! ```toml
+//! master_curve = "master_curve.csv"        # or [[moduli]] with frequency_hz, storage_mpa, loss_mpa
+//! modulus_kind = "youngs"                  # or "shear"
+//! extrapolate = "refuse"                   # or "hold": the moduli at the ends of the table beyond them
+//! points_per_decade = 5.0                  # optional: averages
+//! columns = "frequency_hz=1,storage_pa=2,loss_pa=3"     # optional: for a file without a header
+//!
+//! [temperature]
+//! shift_factors = "shift_factors.csv"      # or [[temperature.shift]] with temperature_c, log10_shift
+//! ```
+//!
+//! With any of them, how the rubber softens with strain ([`payne`](super::payne)); strains of `[[payne.kraus]]` (`critical_strain`,
+//! `exponent`, `storage_limit`, `loss_limit`, `loss_peak`, `highest_strain`) and `[[payne.table]]` (lists `strain`,
+//! `storage_factor`, `loss_factor`) are parts of one, each with a `temperature_c` if there are several:
+//!
+//! ```toml
+//! [payne]
+//! strain_kind = "elongation"               # or "shear"
+//! strain_sweep = "strain_sweep.csv"        # or [[payne.kraus]], or [[payne.table]]
+//! strain_unit = "percent"                  # or "fraction", where the header does not say
+//! law = "table"                            # or "kraus"
+//! ```
 
-use super::law::{FiniteStrainEntry, LawProblem};
+use super::entry::RubberFile;
+use super::error::RubberFileError;
+use super::law::FiniteStrainEntry;
+use super::tables;
 use crate::files::{self, TomlError};
-use crate::units::Units;
-use asperity_core::error_kind::{ErrorKind, HasKind};
-use std::path::{Path, PathBuf};
+use asperity_core::rubber::{FrequencyRange, Rubber, RubberData, RubberModel, Viscoelastic};
+use std::path::Path;
 
-use serde::Deserialize;
-
-use asperity_core::rubber::{
-    FrequencyRange, MaxwellBranch, Rheology, Rubber, RubberData, RubberError, ShiftLaw,
-    TemperatureDependence, TemperatureError, VerticalShift,
-};
-
-/// Why a file is no rubber.
-#[derive(Debug, thiserror::Error)]
-pub enum RubberFileError {
-    /// It cannot be read.
-    #[error("cannot read the rubber {}: {source}{}", .path.display(), files::advice(.source))]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system answered.
-        source: std::io::Error,
-    },
-    /// The text is not the TOML of a rubber.
-    #[error(
-        "rubber {}{problem}{}",
-        .path.display(),
-        if *.is_recipe { "\n  this is a recipe: give the file of the rubber" } else { "" }
-    )]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// Line, key and what to write.
-        problem: TomlError,
-        /// Whether it is a recipe.
-        is_recipe: bool,
-    },
-    /// A number that no rubber has, as it stands in the file.
-    #[error("{}: {key} is {value}, it must be positive and finite", .path.display())]
-    Number {
-        /// The file.
-        path: PathBuf,
-        /// Its key, and the branch.
-        key: String,
-        /// Its value, in the unit of the key.
-        value: f64,
-    },
-    /// The numbers are not those of a rubber.
-    #[error("{} does not describe a rubber", .path.display())]
-    Invalid {
-        /// The file.
-        path: PathBuf,
-        /// The first bad number.
-        source: RubberError,
-    },
-    /// The temperature section, or a temperature that was asked for.
-    #[error("{}", .path.display())]
-    Temperature {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: TemperatureError,
-    },
-    /// Not exactly one law.
-    #[error(
-        "{}: [temperature] has {found} laws, it must have one: either wlf or arrhenius", .path.display()
-    )]
-    Laws {
-        /// The file.
-        path: PathBuf,
-        /// How many there are.
-        found: usize,
-    },
-    /// The section of the law at finite strain.
-    #[error("{}: {problem}", .path.display())]
-    FiniteStrain {
-        /// The file.
-        path: PathBuf,
-        /// Which key is missing or has no business there.
-        problem: LawProblem,
-    },
-    /// A measured range that is none.
-    #[error(
-        "{}: measured_hz is [{}, {}], wanted are the lowest and the highest measured frequency, positive",
-        .path.display(), .range[0], .range[1]
-    )]
-    MeasuredRange {
-        /// The file.
-        path: PathBuf,
-        /// The range in Hz.
-        range: [f64; 2],
-    },
-}
-
-impl HasKind for RubberFileError {
-    fn kind(&self) -> ErrorKind {
-        match self {
-            Self::Unreadable { .. }
-            | Self::Syntax { .. }
-            | Self::Number { .. }
-            | Self::Invalid { .. }
-            | Self::Temperature { .. }
-            | Self::Laws { .. }
-            | Self::FiniteStrain { .. }
-            | Self::MeasuredRange { .. } => ErrorKind::Input,
-        }
-    }
-}
-
-/// The file as it is written, in the units of its keys.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RubberFile {
-    name: String,
-    /// For the reader of the file; computing needs it not.
-    #[serde(default, rename = "source")]
-    _source: Option<String>,
-    equilibrium_modulus_mpa: f64,
-    poisson_ratio: f64,
-    measured_hz: Option<[f64; 2]>,
-    temperature: Option<TemperatureEntry>,
-    finite_strain: Option<FiniteStrainEntry>,
-    #[serde(default)]
-    branches: Vec<BranchEntry>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TemperatureEntry {
-    reference_c: f64,
-    measured_c: Option<[f64; 2]>,
-    wlf: Option<WlfEntry>,
-    arrhenius: Option<ArrheniusEntry>,
-    vertical: Option<VerticalShift>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct WlfEntry {
-    c1: f64,
-    c2_k: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ArrheniusEntry {
-    activation_energy_kj_mol: f64,
-}
-
-impl TemperatureEntry {
-    /// The dependence, or the number of laws.
-    fn dependence(&self) -> Result<TemperatureDependence, usize> {
-        let law = match (&self.wlf, &self.arrhenius) {
-            (Some(wlf), None) => ShiftLaw::Wlf { c1: wlf.c1, c2_k: wlf.c2_k },
-            (None, Some(arrhenius)) => {
-                ShiftLaw::Arrhenius { activation_energy_kj_mol: arrhenius.activation_energy_kj_mol }
-            }
-            (None, None) => return Err(0),
-            (Some(_), Some(_)) => return Err(2),
-        };
-        let (reference_c, measured_c) = (self.reference_c, self.measured_c);
-        let vertical = self.vertical;
-        Ok(TemperatureDependence { reference_c, law, measured_c, vertical })
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BranchEntry {
-    modulus_mpa: f64,
-    relaxation_time_s: f64,
-}
-
-impl RubberFile {
-    /// The first modulus or relaxation time that is none, with its key.
-    fn bad_number(&self) -> Option<(String, f64)> {
-        let usable = |value: f64| value > 0.0 && value.mpa_to_pa().is_finite();
-        let equilibrium = ("equilibrium_modulus_mpa".to_owned(), self.equilibrium_modulus_mpa);
-        let branches = self.branches.iter().enumerate().flat_map(|(k, branch)| {
-            let named = |key: &str| format!("{key} of branch {}", k + 1);
-            [
-                (named("modulus_mpa"), branch.modulus_mpa),
-                (named("relaxation_time_s"), branch.relaxation_time_s),
-            ]
-        });
-        std::iter::once(equilibrium).chain(branches).find(|(_, value)| !usable(*value))
-    }
-}
-
-impl From<RubberFile> for Rubber {
-    fn from(file: RubberFile) -> Self {
-        let branch = |entry: &BranchEntry| MaxwellBranch {
-            modulus: entry.modulus_mpa.mpa_to_pa(),
-            relaxation_time: entry.relaxation_time_s,
-        };
-        Self {
-            name: file.name,
-            equilibrium_modulus: file.equilibrium_modulus_mpa.mpa_to_pa(),
-            branches: file.branches.iter().map(branch).collect(),
-            poisson_ratio: file.poisson_ratio,
-            finite_strain: Rheology::default(),
-        }
-    }
-}
-
-/// Reads and validates the rubber in a TOML file.
+/// Reads and validates the Maxwell model in a TOML file.
 ///
 /// # Errors
 /// [`RubberFileError`] with the path; the source has line and key, or the bad number.
+/// [`RubberFileError::NoRelaxationTimes`] for a table of moduli.
 pub fn read_rubber(path: impl AsRef<Path>) -> Result<Rubber, RubberFileError> {
-    Ok(read_rubber_data(path)?.rubber)
+    maxwell(path.as_ref(), read_rubber_data(path.as_ref())?)
+}
+
+fn maxwell(path: &Path, data: RubberData) -> Result<Rubber, RubberFileError> {
+    match data.rubber.maxwell() {
+        Ok(rubber) => Ok(rubber.clone()),
+        Err(source) => Err(RubberFileError::NoRelaxationTimes { path: path.to_path_buf(), source }),
+    }
 }
 
 /// Reads and validates the rubber in a TOML file with what is known of its measurement.
@@ -281,7 +117,7 @@ pub fn read_rubber_at(
 /// # Errors
 /// Those of [`read_rubber`] but [`RubberFileError::Unreadable`].
 pub fn parse_rubber(path: &Path, text: &str) -> Result<Rubber, RubberFileError> {
-    Ok(parse_rubber_data(path, text)?.rubber)
+    maxwell(path, parse_rubber_data(path, text)?)
 }
 
 /// [`read_rubber_data`] of a text in memory; the path serves the messages.
@@ -296,20 +132,59 @@ pub fn parse_rubber_data(path: &Path, text: &str) -> Result<RubberData, RubberFi
             .iter()
             .any(|section| text.contains(section)),
     })?;
+    if let Some(problem) = file.misplaced() {
+        return Err(RubberFileError::Keys { path: path.to_path_buf(), problem });
+    }
     let measured = file.measured_hz.map(|range| measured_range(path, range)).transpose()?;
-    let temperature = file.temperature.as_ref().map(|entry| dependence(path, entry)).transpose()?;
+    let temperature =
+        file.temperature.as_ref().map(|entry| tables::dependence(path, entry)).transpose()?;
     if let Some((key, value)) = file.bad_number() {
         return Err(RubberFileError::Number { path: path.to_path_buf(), key, value });
     }
+    let (rubber, mut notes) = model(path, text, &file)?;
+    let payne = file.payne.as_ref().map(|entry| tables::payne(path, entry)).transpose()?;
+    let payne = payne.map(|(payne, of_payne)| {
+        notes.extend(of_payne);
+        payne
+    });
+    let several = payne.as_ref().is_some_and(|payne| payne.curves().len() > 1);
+    if several && temperature.is_none() {
+        let problem = "[payne] has sweeps at several temperatures and the moduli have none: add [temperature], or keep one \
+                       sweep";
+        return Err(RubberFileError::Keys { path: path.to_path_buf(), problem: problem.into() });
+    }
+    let measured = measured.or_else(|| rubber.measured());
+    Ok(RubberData { rubber, measured, temperature, payne, notes })
+}
+
+/// The model of the file: a table, or relaxation times; and what reading it changed.
+fn model(
+    path: &Path,
+    text: &str,
+    file: &RubberFile,
+) -> Result<(RubberModel, Vec<String>), RubberFileError> {
+    if file.is_table() {
+        let (table, notes) = tables::moduli(path, file)?;
+        return Ok((table.into(), notes));
+    }
+    let Some(rubber) = file.maxwell() else {
+        return Err(RubberFileError::Keys {
+            path: path.to_path_buf(),
+            problem: match text.contains("[[branches]]") {
+                true => "the key `equilibrium_modulus_mpa` is missing".into(),
+                false => "the key `equilibrium_modulus_mpa` is missing, or a table of moduli in its place: master_curve = \
+                          \"FILE\" or [[moduli]]"
+                    .into(),
+            },
+        });
+    };
     let law = file.finite_strain.as_ref().map(FiniteStrainEntry::law).transpose();
     let finite_strain = law
         .map_err(|problem| RubberFileError::FiniteStrain { path: path.to_path_buf(), problem })?
         .unwrap_or_default();
-    let rubber = Rubber { finite_strain, ..Rubber::from(file) };
-    rubber
-        .validate()
-        .map_err(|source| RubberFileError::Invalid { path: path.to_path_buf(), source })?;
-    Ok(RubberData { rubber, measured, temperature })
+    let rubber = Rubber { finite_strain, ..rubber };
+    rubber.validate().map_err(|source| tables::invalid(path, source))?;
+    Ok((rubber.into(), Vec::new()))
 }
 
 fn measured_range(path: &Path, range: [f64; 2]) -> Result<FrequencyRange, RubberFileError> {
@@ -320,20 +195,10 @@ fn measured_range(path: &Path, range: [f64; 2]) -> Result<FrequencyRange, Rubber
     Err(RubberFileError::MeasuredRange { path: path.to_path_buf(), range })
 }
 
-fn dependence(
-    path: &Path,
-    entry: &TemperatureEntry,
-) -> Result<TemperatureDependence, RubberFileError> {
-    let path = || path.to_path_buf();
-    let found =
-        entry.dependence().map_err(|found| RubberFileError::Laws { path: path(), found })?;
-    found.validate().map_err(|source| RubberFileError::Temperature { path: path(), source })?;
-    Ok(found)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity_core::rubber::{MaxwellBranch, ShiftLaw, TemperatureError};
 
     const VALID: &str = "name = 'tread'\nequilibrium_modulus_mpa = 4.0\npoisson_ratio = 0.5\n\
         [[branches]]\nmodulus_mpa = 2.0\nrelaxation_time_s = 1e-3\n";
@@ -396,17 +261,14 @@ mod tests {
     #[test]
     fn a_rubber_is_shifted_to_a_temperature() {
         let data = parse_rubber_data(Path::new("tread.toml"), &with_temperature()).unwrap();
-        assert_eq!(data.rubber, parse(VALID).unwrap());
+        assert_eq!(data.rubber, parse(VALID).unwrap().into());
         // log10 a = -8 * 60 / 160 = -3.
         let hot = data.at_temperature(80.0).unwrap();
-        approx::assert_relative_eq!(
-            hot.rubber.branches[0].relaxation_time,
-            1e-6,
-            max_relative = 1e-12
-        );
-        assert_eq!(hot.rubber.branches[0].modulus, 2e6);
+        let branch = |data: &RubberData| data.rubber.maxwell().unwrap().branches[0];
+        approx::assert_relative_eq!(branch(&hot).relaxation_time, 1e-6, max_relative = 1e-12);
+        assert_eq!(branch(&hot).modulus, 2e6);
         approx::assert_relative_eq!(hot.measured.unwrap().highest_hz, 1e7, max_relative = 1e-12);
-        let back = hot.at_temperature(20.0).unwrap().rubber.branches[0].relaxation_time;
+        let back = branch(&hot.at_temperature(20.0).unwrap()).relaxation_time;
         approx::assert_relative_eq!(back, 1e-3, max_relative = 1e-12);
         let without = RubberData { temperature: None, ..hot };
         assert!(matches!(without.at_temperature(20.0), Err(TemperatureError::NoLaw { .. })));

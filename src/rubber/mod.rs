@@ -5,18 +5,21 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `document` | a rubber as the text of its file |
-//! | `file` | rubbers as TOML files |
+//! | `file`, `error` | rubbers as TOML files, and why a file is none |
+//! | `entry`, `tables` | the file as it is written; the measured rows in it and in files beside it |
 //! | `law` | their section of the law at finite strain |
 
 mod document;
+mod entry;
+mod error;
 mod file;
 mod law;
+mod tables;
 
 pub use asperity_core::rubber::*;
-pub use document::to_toml;
-pub use file::{
-    RubberFileError, parse_rubber, parse_rubber_data, read_rubber, read_rubber_at, read_rubber_data,
-};
+pub use document::{payne_section, to_toml};
+pub use error::RubberFileError;
+pub use file::{parse_rubber, parse_rubber_data, read_rubber, read_rubber_at, read_rubber_data};
 pub use law::LawProblem;
 
 /// A rubber from measured storage and loss moduli: the fit of [`asperity_core::rubber::fit`], and the tables that it
@@ -24,7 +27,7 @@ pub use law::LawProblem;
 pub mod fit {
     pub use asperity_core::rubber::fit::*;
     pub use asperity_scans::sweeps::{
-        DescribedColumn, SweepTable, TableError, TableOptions, doubts, parse_sweeps,
-        read_shift_factors, read_sweeps,
+        DescribedColumn, StrainUnit, SweepTable, TableError, TableOptions, doubts, parse_sweeps,
+        read_master_curve, read_shift_factors, read_strain_sweeps, read_sweeps,
     };
 }

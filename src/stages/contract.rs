@@ -17,7 +17,7 @@ use super::{Stage, StageError, Watch};
 use crate::artifact::{
     ArtifactError, Input, Pending, ResultFile, RunView, SOLVES_FOLDER, SchemaVersion, SolveStore,
 };
-use crate::rubber::{Rubber, RubberData};
+use crate::rubber::{Rubber, RubberData, RubberModel};
 use serde_json::Value;
 
 /// A stage: its name, what of the code determines its result, and what it does for a recipe.
@@ -100,7 +100,7 @@ impl<'a> Request<'a> {
     }
 
     /// The rubber.
-    pub fn rubber(&self) -> &Rubber {
+    pub fn rubber(&self) -> &RubberModel {
         &self.material.rubber
     }
 }

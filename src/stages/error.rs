@@ -248,6 +248,14 @@ pub enum StageError {
         /// Which number.
         source: crate::rubber::RubberError,
     },
+    /// A table of moduli, of which finite elements cannot be made.
+    #[error("{}: {source}; or leave out the stages at finite deformation", path.display())]
+    NoRelaxationTimes {
+        /// The file of the rubber.
+        path: PathBuf,
+        /// What it lacks.
+        source: crate::rubber::RubberError,
+    },
     /// A contact.
     #[error("{kind}, realisation {realisation}, {speed_mm_s} mm/s: {source}{}", keys::of_curve(.source))]
     Contact {
@@ -391,6 +399,7 @@ impl HasKind for StageError {
             | Self::UnequalScans { .. }
             | Self::NoWaves { .. }
             | Self::RubberAtFiniteDeformation { .. }
+            | Self::NoRelaxationTimes { .. }
             | Self::NoMacroscale { .. }
             | Self::NoRelaxation { .. }
             | Self::Published { .. } => ErrorKind::Input,

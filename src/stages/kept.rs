@@ -14,7 +14,7 @@ use crate::fem::error::{BeyondLaw, FemError, PathEnd};
 use crate::fem::steady::SteadyContact;
 use crate::fem::steady::solution::SteadySolution;
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -24,20 +24,35 @@ use std::time::Instant;
 
 /// What determines the solves of a solver for a rubber, to which its caller adds what it solves. The name of the
 /// rubber is no part of it; the revision of the solver is, which is raised when the same problem gives another number.
-pub(super) fn problem(solver: &str, revision: u32, rubber: &Rubber) -> Value {
-    json!({
-        "solver": [solver, revision],
-        "equilibrium_modulus": rubber.equilibrium_modulus,
-        "branches": rubber.branches,
-        "poisson_ratio": rubber.poisson_ratio,
-    })
+pub(super) fn problem(solver: &str, revision: u32, rubber: &RubberModel) -> Value {
+    match rubber {
+        RubberModel::Maxwell(rubber) => json!({
+            "solver": [solver, revision],
+            "equilibrium_modulus": rubber.equilibrium_modulus,
+            "branches": rubber.branches,
+            "poisson_ratio": rubber.poisson_ratio,
+        }),
+        RubberModel::Table(table) => json!({
+            "solver": [solver, revision],
+            "moduli": table.points(),
+            "extrapolation": table.extrapolation(),
+            "poisson_ratio": table.poisson_ratio(),
+        }),
+    }
 }
 
 /// The same of a solver at finite deformation, which the law of the rubber determines too; a law that is not named is no
 /// part of it.
-pub(super) fn problem_at_finite_deformation(solver: &str, revision: u32, rubber: &Rubber) -> Value {
+pub(super) fn problem_at_finite_deformation(
+    solver: &str,
+    revision: u32,
+    rubber: &RubberModel,
+) -> Value {
     let mut problem = problem(solver, revision, rubber);
-    if !rubber.finite_strain.is_default() {
+    // A table of moduli has no solution at finite deformation, and so no law.
+    if let Ok(rubber) = rubber.maxwell()
+        && !rubber.finite_strain.is_default()
+    {
         problem["finite_strain"] = json!(rubber.finite_strain);
     }
     problem
@@ -205,10 +220,10 @@ pub(crate) trait SolveTask: Sync + Sized {
 
     /// Digest of what all its solves have in common, under which they are kept; tasks of one problem belong into one
     /// shard of a sweep.
-    fn problem(&self, parameters: &Self::Parameters, rubber: &Rubber) -> Digest;
+    fn problem(&self, parameters: &Self::Parameters, rubber: &RubberModel) -> Digest;
 
     /// Digest of all that determines which solves it asks for.
-    fn key(&self, parameters: &Self::Parameters, rubber: &Rubber) -> Digest;
+    fn key(&self, parameters: &Self::Parameters, rubber: &RubberModel) -> Digest;
 
     /// What it is, for messages: `bem, 8 waves, realisation 3, 10 mm/s`.
     fn name(&self) -> String;
@@ -220,7 +235,7 @@ pub(crate) trait SolveTask: Sync + Sized {
     fn solve(
         &self,
         parameters: &Self::Parameters,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<Self::Output, StageError>;
@@ -232,7 +247,7 @@ pub(crate) trait SolveTask: Sync + Sized {
     fn is_finished(
         &self,
         parameters: &Self::Parameters,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
     ) -> Result<bool, ArtifactError> {
         let solves = store.problem(&self.problem(parameters, rubber))?;
@@ -247,7 +262,7 @@ pub(crate) trait SolveTask: Sync + Sized {
 pub(crate) fn unfinished<T: SolveTask>(
     tasks: Vec<T>,
     parameters: &T::Parameters,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     store: &SolveStore,
 ) -> Result<Vec<T>, ArtifactError> {
     let mut missing = Vec::new();

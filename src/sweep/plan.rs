@@ -7,7 +7,7 @@ use super::task::{Solvers, Task};
 use super::{Prepared, SweepError, shares};
 use crate::artifact::{Digest, SolveStore, TOOL_VERSION, write_by_rename};
 use crate::recipe::Recipe;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::Watch;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -75,7 +75,7 @@ pub struct SweepPlan {
     /// Number of cases.
     pub cases: usize,
     /// The rubbers, each at each temperature.
-    pub rubbers: Vec<Rubber>,
+    pub rubbers: Vec<RubberModel>,
     /// Digests of the scans of each specimen.
     pub scans: BTreeMap<String, Digest>,
     /// The shards.
@@ -95,7 +95,7 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
-    pub fn new(case: usize, task: Task, solvers: &Solvers, rubber: &Rubber) -> Self {
+    pub fn new(case: usize, task: Task, solvers: &Solvers, rubber: &RubberModel) -> Self {
         let (problem, key) = (task.problem(solvers, rubber), task.key(solvers, rubber));
         Self { case, problem, key, task }
     }

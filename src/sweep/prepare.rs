@@ -6,7 +6,7 @@ use super::{SweepError, plan::Wanted};
 use crate::artifact::{Digest, RunView, SOLVES_FOLDER, SolveStore};
 use crate::pipeline::{self, PipelineError, Selection};
 use crate::recipe::{Case, Recipe};
-use crate::rubber::{Rubber, RubberData};
+use crate::rubber::{RubberData, RubberModel};
 use crate::stages;
 use crate::stages::bem::{self, CURVES};
 use crate::stages::ingest::{ScanFile, find_scans};
@@ -68,7 +68,7 @@ impl Prepared {
     }
 
     /// The rubber of a case by its number.
-    pub fn rubber(&self, case: usize) -> &Rubber {
+    pub fn rubber(&self, case: usize) -> &RubberModel {
         &self.materials[self.material_of[case]].rubber
     }
 

@@ -3,7 +3,7 @@
 use crate::artifact::{Digest, SolveStore};
 use crate::recipe::Recipe;
 use crate::requirement::InvalidRecipe;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::areal;
 use crate::stages::bem::{self, Bem};
 use crate::stages::fem;
@@ -73,7 +73,7 @@ impl Solvers {
 
 impl Task {
     /// Digest under which its solves are kept; tasks of one problem belong into one shard.
-    pub fn problem(&self, solvers: &Solvers, rubber: &Rubber) -> Digest {
+    pub fn problem(&self, solvers: &Solvers, rubber: &RubberModel) -> Digest {
         match self {
             Self::Bem(task) => task.problem(&solvers.bem, rubber),
             Self::Areal(task) => task.problem(&solvers.areal, rubber),
@@ -84,7 +84,7 @@ impl Task {
     }
 
     /// Digest of all that determines its solves.
-    pub fn key(&self, solvers: &Solvers, rubber: &Rubber) -> Digest {
+    pub fn key(&self, solvers: &Solvers, rubber: &RubberModel) -> Digest {
         match self {
             Self::Bem(task) => task.key(&solvers.bem, rubber),
             Self::Areal(task) => task.key(&solvers.areal, rubber),
@@ -101,7 +101,7 @@ impl Task {
     pub fn solve(
         &self,
         solvers: &Solvers,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<(), StageError> {

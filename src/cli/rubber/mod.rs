@@ -1,6 +1,8 @@
 //! `asperity rubber`: a rubber file from measured moduli, and its law at finite strain from a measured curve.
 
 mod hyperelastic;
+mod payne;
+mod show;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -53,6 +55,8 @@ const NO_PLATEAU: f64 = 1.2;
 pub(super) enum Rubber {
     Fit(Fit),
     Hyperelastic(hyperelastic::Hyperelastic),
+    Payne(payne::PayneFit),
+    Summary(show::Show),
 }
 
 /// Which modulus was measured.
@@ -167,6 +171,8 @@ impl Rubber {
         match self {
             Self::Fit(fit) => fit.run(quiet),
             Self::Hyperelastic(curve) => curve.run(quiet),
+            Self::Payne(payne) => payne.run(quiet),
+            Self::Summary(show) => show.run(quiet),
         }
     }
 }

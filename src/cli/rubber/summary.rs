@@ -124,8 +124,8 @@ fn law(fitted: &FittedLaw) -> String {
         let half_widths = fitted.confidence_95.as_ref();
         half_widths.map_or(String::new(), |half| format!(" ± {}", significant(half[k])))
     };
-    let coefficients = match fitted.law {
-        ShiftLaw::Wlf { c1, c2_k } => {
+    let coefficients = match &fitted.law {
+        &ShiftLaw::Wlf { c1, c2_k } => {
             format!(
                 "WLF        c1 {}{}, c2 {}{} K",
                 significant(c1),
@@ -134,9 +134,10 @@ fn law(fitted: &FittedLaw) -> String {
                 half(1)
             )
         }
-        ShiftLaw::Arrhenius { activation_energy_kj_mol: energy } => {
+        &ShiftLaw::Arrhenius { activation_energy_kj_mol: energy } => {
             format!("Arrhenius  activation energy {}{} kJ/mol", significant(energy), half(0))
         }
+        ShiftLaw::Table(table) => format!("table of {} factors", table.factors().len()),
     };
     format!("{coefficients}; residual {} decades\n", significant(fitted.residual_decades))
 }

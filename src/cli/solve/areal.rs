@@ -18,7 +18,7 @@ use asperity::contact::areal::{
     ArealContact, ArealSetup, ArealSolution, ArealSurface, Sliding, memory_bytes,
 };
 use asperity::contact::refine::{AREAL, OnGrid, Refined, on_grid};
-use asperity::rubber::Rubber;
+use asperity::rubber::RubberModel;
 
 /// Relative tolerance of the contact area of --area; where a grid has no such area, the nearest one within two points.
 const AREA_TOLERANCE: f64 = 1e-6;
@@ -169,7 +169,7 @@ impl Areal {
     /// The contact on the grid of the shape, with its error by the grids of half, a quarter and an eighth of the points.
     fn solve(
         &self,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         shape: &ArealShape,
     ) -> Result<Refined<ArealSolution>, CliError> {
         let [nx, ny] = shape.points();
@@ -182,7 +182,7 @@ impl Areal {
 
     fn solve_on(
         &self,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         shape: &ArealShape,
         halvings: u32,
     ) -> Result<ArealSolution, CliError> {

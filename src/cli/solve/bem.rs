@@ -19,7 +19,7 @@ use asperity::contact::refine::{
 };
 use asperity::contact::sliding::POINTS_RANGE;
 use asperity::contact::{ContactError, ContactSolution, SlidingContact};
-use asperity::rubber::Rubber;
+use asperity::rubber::RubberModel;
 
 /// Relative tolerance of the contact area of --area: far below what any grid resolves, at the cost of a solve
 /// or two.
@@ -154,7 +154,11 @@ impl Bem {
     }
 
     /// The contact, on a sufficiently fine grid or on the given one.
-    fn solve(&self, rubber: &Rubber, shape: &Shape) -> Result<Refined<ContactSolution>, CliError> {
+    fn solve(
+        &self,
+        rubber: &RubberModel,
+        shape: &Shape,
+    ) -> Result<Refined<ContactSolution>, CliError> {
         let solve = |points: usize| self.solve_on(rubber, shape, points);
         let given =
             self.shape.points.or(self.shape.profile.is_some().then_some(shape.heights.len()));
@@ -162,8 +166,7 @@ impl Bem {
             let no_solution = |error: &CliError| matches!(error, CliError::Failure(_));
             return on_grid(points, *POINTS_RANGE.start(), HALF_SPACE, solve, no_solution, view);
         }
-        let watched =
-            if rubber.branches.is_empty() { Watched::ContactArea } else { Watched::Friction };
+        let watched = if rubber.is_elastic() { Watched::ContactArea } else { Watched::Friction };
         let waves = shape.shortest_waves().unwrap_or(1);
         let first = match self.tolerance {
             Some(_) => (FIRST_POINTS_PER_WAVE * waves).next_power_of_two(),
@@ -188,7 +191,7 @@ impl Bem {
 
     fn solve_on(
         &self,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         shape: &Shape,
         points: usize,
     ) -> Result<ContactSolution, CliError> {

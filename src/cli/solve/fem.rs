@@ -148,7 +148,7 @@ impl Fem {
         self.check()?;
         threads::start(None)?;
         let material = self.material.material_at_finite_deformation()?;
-        let rubber = material.rubber();
+        let rubber = material.rubber().maxwell().map_err(CliError::input)?;
         let shape = self.shape.build()?;
         if let Some(warning) = &shape.warning {
             note(quiet, format_args!("warning: {warning}"));

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::{CliError, values};
-use asperity::rubber::{FiniteStrainRubber, FrequencyRange, Rubber, RubberData, read_rubber_data};
+use asperity::rubber::{
+    FiniteStrainRubber, FrequencyRange, Rubber, RubberData, RubberModel, read_rubber_data,
+};
 
 /// The rubber.
 #[derive(Debug, Args)]
@@ -55,7 +57,8 @@ impl MaterialOptions {
     /// The rubber, if it can be solved at finite deformation.
     pub(super) fn material_at_finite_deformation(&self) -> Result<Material, CliError> {
         let material = self.material()?;
-        match FiniteStrainRubber::new(material.rubber(), material.rubber().finite_strain) {
+        let rubber = material.rubber().maxwell().map_err(|error| self.named(error))?;
+        match FiniteStrainRubber::new(rubber, rubber.finite_strain) {
             Ok(_) => Ok(material),
             Err(error) => Err(self.named(error)),
         }
@@ -76,7 +79,7 @@ impl MaterialOptions {
 }
 
 impl Material {
-    pub(super) fn rubber(&self) -> &Rubber {
+    pub(super) fn rubber(&self) -> &RubberModel {
         &self.data.rubber
     }
 

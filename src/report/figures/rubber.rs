@@ -4,7 +4,7 @@ use crate::artifact::RunView;
 use crate::plot::{Axis, Colour, Figure, Mark, Panel, Points, Series};
 use crate::report::ReportError;
 use crate::report::read::rows;
-use crate::rubber::{FrequencyRange, Rubber};
+use crate::rubber::{FrequencyRange, RubberModel, Viscoelastic};
 use crate::stages::realise::{AREAL_SURFACES, SURFACES, read_surfaces};
 use crate::units::Units;
 use serde_json::Value;
@@ -21,7 +21,7 @@ const BEYOND: f64 = 30.0;
 /// What the contacts of a run were solved with.
 pub(in crate::report) struct Material {
     /// The rubber at the temperature of the run.
-    pub rubber: Rubber,
+    pub rubber: RubberModel,
     /// Its temperature, if the recipe names one.
     pub temperature_c: Option<f64>,
     /// Frequencies at which it was measured, if its file says.
@@ -34,7 +34,7 @@ pub(in crate::report) struct Material {
 pub(in crate::report) fn material(run: &RunView) -> Result<Option<Material>, ReportError> {
     let Some(manifest) = run.stage_manifest("bem")? else { return Ok(None) };
     let parameters = &manifest.parameters;
-    let Ok(rubber) = serde_json::from_value::<Rubber>(parameters["rubber"].clone()) else {
+    let Ok(rubber) = serde_json::from_value::<RubberModel>(parameters["rubber"].clone()) else {
         return Ok(None);
     };
     let measured = &parameters["measured"];
@@ -66,11 +66,16 @@ pub(in crate::report) fn material(run: &RunView) -> Result<Option<Material>, Rep
 pub(super) fn rubber(run: &RunView) -> Result<Option<Figure>, ReportError> {
     let Some(material) = material(run)? else { return Ok(None) };
     let rubber = &material.rubber;
-    let relaxing = rubber.branches.iter().map(|branch| 1.0 / (TAU * branch.relaxation_time));
+    let relaxing: Vec<f64> = match rubber {
+        RubberModel::Maxwell(rubber) => {
+            rubber.branches.iter().map(|branch| 1.0 / (TAU * branch.relaxation_time)).collect()
+        }
+        RubberModel::Table(table) => vec![table.range().lowest_hz, table.range().highest_hz],
+    };
     let excited =
         material.excited.iter().flat_map(|(_, range)| [range.lowest_hz, range.highest_hz]);
     let ends = |value: f64| value.is_finite() && value > 0.0;
-    let of_interest: Vec<f64> = relaxing.chain(excited).filter(|f| ends(*f)).collect();
+    let of_interest: Vec<f64> = relaxing.into_iter().chain(excited).filter(|f| ends(*f)).collect();
     let low = of_interest.iter().copied().fold(f64::INFINITY, f64::min) / BEYOND;
     let high = of_interest.iter().copied().fold(0.0, f64::max) * BEYOND;
     if low > high {
@@ -94,7 +99,7 @@ pub(super) fn rubber(run: &RunView) -> Result<Option<Figure>, ReportError> {
             .into(),
         panels: vec![
             Panel {
-                title: format!("{}{temperature}", rubber.name),
+                title: format!("{}{temperature}", rubber.name()),
                 x: frequency(),
                 y: modulus_axis(),
                 series: with_ranges(lines.to_vec()),
@@ -127,11 +132,11 @@ pub(super) fn frequencies(lowest: f64, highest: f64) -> Vec<f64> {
 /// Storage and loss modulus of a rubber in MPa over frequencies in Hz, where `shown` holds for the
 /// modulus: name, line and colour.
 pub(super) fn moduli(
-    rubber: &Rubber,
+    rubber: &RubberModel,
     frequencies: &[f64],
     shown: &dyn Fn(f64) -> bool,
 ) -> [(&'static str, Mark, Colour); 2] {
-    let line = |part: fn(&Rubber, f64) -> f64| -> Points {
+    let line = |part: fn(&RubberModel, f64) -> f64| -> Points {
         let modulus = |frequency: &f64| 1e-6 * part(rubber, TAU * frequency);
         let value = |modulus: f64| if shown(modulus) { modulus } else { f64::NAN };
         frequencies.iter().map(|frequency| (*frequency, value(modulus(frequency)))).collect()

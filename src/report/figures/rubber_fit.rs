@@ -76,9 +76,10 @@ fn shifts(fit: &MasterCurve) -> Panel {
             let log10 = fitted.law.log10_shift(t, reference);
             (t, if shown.contains(&log10) { log10 } else { f64::NAN })
         });
-        let name = match fitted.law {
+        let name = match &fitted.law {
             ShiftLaw::Wlf { .. } => "WLF",
             ShiftLaw::Arrhenius { .. } => "Arrhenius",
+            ShiftLaw::Table(_) => "table",
         };
         let label = format!("{name}, residual {:.3} decades", fitted.residual_decades);
         series.push(Series::new(label, Colour::Nth(number + 2), Mark::Line(line.collect())));

@@ -5,6 +5,7 @@ use super::page::{absent, number, percent, table};
 use crate::report::ReportError;
 use crate::report::figures::{Material, material};
 use crate::report::read::rows;
+use crate::rubber::{RubberModel, Viscoelastic};
 use crate::stages;
 use crate::stages::micro::{SAMPLES, SampleRow};
 use maud::{Markup, html};
@@ -44,7 +45,11 @@ impl Report<'_> {
             return Ok(absent("No rubber was used in this run: no contacts were solved."));
         };
         let rubber = &material.rubber;
-        let branches = rubber.branches.iter().enumerate().map(|(k, branch)| {
+        let branches = match rubber {
+            RubberModel::Maxwell(rubber) => rubber.branches.as_slice(),
+            RubberModel::Table(_) => &[],
+        };
+        let branches = branches.iter().enumerate().map(|(k, branch)| {
             vec![
                 (k + 1).to_string(),
                 number(1e-6 * branch.modulus, 5),
@@ -56,13 +61,11 @@ impl Report<'_> {
         });
         Ok(html! {
             (self.doubt(&[stages::bem::STAGE]))
-            p { "Rubber " (rubber.name)
+            p { "Rubber " (rubber.name())
                 @match material.temperature_c { Some(celsius) => { " at " (celsius) " °C" } None => {} }
-                ": relaxed modulus " (number(1e-6 * rubber.equilibrium_modulus, 4)) " MPa, glassy modulus "
-                (number(1e-6 * rubber.glassy_modulus(), 4)) " MPa, Poisson ratio " (rubber.poisson_ratio)
-                ", " (rubber.branches.len()) " Maxwell branches."
-                @if !rubber.finite_strain.is_default() {
-                    " Law at finite strain: " (rubber.finite_strain.name()) "."
+                ": " (what_is_known(rubber)) ", Poisson ratio " (rubber.poisson_ratio()) "."
+                @if let Ok(maxwell) = rubber.maxwell() && !maxwell.finite_strain.is_default() {
+                    " Law at finite strain: " (maxwell.finite_strain.name()) "."
                 }
                 @match material.measured {
                     Some([low, high]) => { " It was measured from " (number(low, 3)) " to " (number(high, 3)) " Hz at this temperature." }
@@ -72,8 +75,31 @@ impl Report<'_> {
             (self.figure("rubber")?)
             (table("Frequencies v/λ that the waves excite",
                 &["speed / (mm/s)", "longest wave / Hz", "shortest wave / Hz"], 1, excited))
-            (table("Maxwell branches", &["branch", "modulus / MPa", "relaxation time / s"], 1, branches))
+            @if rubber.table().is_none() {
+                (table("Maxwell branches", &["branch", "modulus / MPa", "relaxation time / s"], 1, branches))
+            }
         })
+    }
+}
+
+/// Limits and size of the model, in words.
+fn what_is_known(rubber: &RubberModel) -> String {
+    match rubber {
+        RubberModel::Maxwell(rubber) => format!(
+            "relaxed modulus {} MPa, glassy modulus {} MPa, {} Maxwell branches",
+            number(1e-6 * rubber.equilibrium_modulus, 4),
+            number(1e-6 * rubber.glassy_modulus(), 4),
+            rubber.branches.len()
+        ),
+        RubberModel::Table(table) => {
+            let storage = table.points().iter().map(|point| 1e-6 * point.storage_modulus);
+            format!(
+                "a table of {} moduli, storage modulus {} to {} MPa",
+                table.points().len(),
+                number(storage.clone().fold(f64::INFINITY, f64::min), 4),
+                number(storage.fold(0.0, f64::max), 4)
+            )
+        }
     }
 }
 

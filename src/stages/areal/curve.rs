@@ -8,7 +8,7 @@ use crate::contact::curve::{Accuracy, CurveError, friction_curve_within};
 use crate::contact::refine::{AREAL, LEAST_CONTACT_POINTS, OnGrid, on_grid};
 use crate::contact::{CurvePoint, CurveValue};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use crate::stages::bem::{Given, solved};
 use crate::stages::kept::{self, Kept};
 use crate::stages::{SolveError, StageError};
@@ -53,7 +53,7 @@ pub(super) struct Curve<'a> {
 /// The contact on the grids that it is solved on.
 struct Grids<'a> {
     task: &'a Task,
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     thickness: Option<f64>,
     /// Points of the finest grid.
     points: [usize; 2],
@@ -79,7 +79,7 @@ type Settled = (Vec<CurveValue>, Vec<(f64, CurveError<SolveError>)>);
 impl<'a> Curve<'a> {
     pub fn new(
         sweep: &Sweep,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         task: &'a Task,
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
@@ -340,7 +340,7 @@ fn is_no_value(error: &CurveError<SolveError>) -> bool {
 }
 
 /// What all solves of a curve have in common.
-pub(super) fn problem(parameters: &Areal, rubber: &Rubber, task: &Task) -> Value {
+pub(super) fn problem(parameters: &Areal, rubber: &RubberModel, task: &Task) -> Value {
     let mut problem = kept::problem("areal", SOLVER_REVISION, rubber);
     let map = &task.surface.map;
     let bytes: Vec<u8> = map.heights.iter().flat_map(|z| z.to_le_bytes()).collect();

@@ -23,7 +23,7 @@ use crate::artifact::{ArrayDataset, ArtifactError, RunView, SolveStore, Storage}
 use crate::contact::areal::memory_bytes;
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use curve::CurveResult;
 pub use rows::{
     AREAL_CURVES, AREAL_FIELDS, AREAL_SOLVES, AREAL_UNSOLVED, ArealCurveRow, ArealSolveRow,
@@ -163,7 +163,7 @@ impl Areal {
 pub fn run(
     parameters: &Areal,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     store: &SolveStore,
     context: &mut Context,
@@ -215,7 +215,7 @@ fn tasks(parameters: &Areal, bem: &Bem, surfaces: &[ArealSurface]) -> Vec<Task> 
 pub fn missing(
     sweep: &Sweep,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[ArealSurface],
     store: &SolveStore,
 ) -> Result<Vec<Task>, ArtifactError> {

@@ -5,7 +5,7 @@ use super::{Areal, ArealCurveRow, ArealUnsolvedRow};
 use crate::artifact::{Digest, SolveStore};
 use crate::contact::CurveValue;
 use crate::contact::curve::CurveError;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::bem::{Given, Wanted};
 use crate::stages::kept::SolveTask;
 use crate::stages::realise::ArealSurface;
@@ -51,11 +51,11 @@ impl SolveTask for Task {
     type Parameters = Sweep;
     type Output = CurveResult;
 
-    fn problem(&self, sweep: &Sweep, rubber: &Rubber) -> Digest {
+    fn problem(&self, sweep: &Sweep, rubber: &RubberModel) -> Digest {
         Digest::of_value(&problem(&sweep.areal, rubber, self))
     }
 
-    fn key(&self, sweep: &Sweep, rubber: &Rubber) -> Digest {
+    fn key(&self, sweep: &Sweep, rubber: &RubberModel) -> Digest {
         Digest::of_value(&json!({
             "stage": ["areal", super::REVISION],
             "problem": self.problem(sweep, rubber),
@@ -73,7 +73,7 @@ impl SolveTask for Task {
     fn solve(
         &self,
         sweep: &Sweep,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<CurveResult, StageError> {

@@ -12,7 +12,7 @@ use super::{Bem, CurveRow};
 use crate::artifact::SolveStore;
 use crate::contact::refine::LEAST_FRICTION;
 use crate::numerics::statistics::MeanEstimate;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::realise::Surface;
 use crate::stages::{StageError, Watch};
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ struct Verdict {
 /// [`StageError::TooFewRealisations`]; those of the solves.
 pub(crate) fn require_attainable(
     parameters: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[Surface],
     most: usize,
     store: &SolveStore,

@@ -9,7 +9,7 @@ use crate::contact::refine::{
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use crate::stages::SolveError;
 use crate::stages::kept::{self, Kept};
 use crate::stages::realise::Surface;
@@ -46,7 +46,7 @@ pub(super) struct Curve<'a> {
 
 /// The contact of one surface at one speed on the grids that it is solved on.
 struct Grids<'a> {
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     surface: &'a Surface,
     speed_mm_s: f64,
     period: f64,
@@ -69,7 +69,7 @@ pub(super) struct FieldSolution {
 impl<'a> Curve<'a> {
     pub fn new(
         parameters: &Bem,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         surface: &'a Surface,
         speed_mm_s: f64,
         store: &'a SolveStore,
@@ -297,7 +297,7 @@ fn points(surface: &Surface, per_wave: u32) -> usize {
 }
 
 /// What all solves of a curve have in common.
-pub(super) fn problem(rubber: &Rubber, surface: &Surface, speed_mm_s: f64) -> Value {
+pub(super) fn problem(rubber: &RubberModel, surface: &Surface, speed_mm_s: f64) -> Value {
     let mut problem = kept::problem("bem", SOLVER_REVISION, rubber);
     problem["profile"] = json!(surface.profile);
     problem["speed_mm_s"] = json!(speed_mm_s);

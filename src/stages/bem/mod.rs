@@ -31,7 +31,7 @@ use super::{Stage, StageError, Watch};
 use crate::artifact::{ArrayDataset, Pending, RunView, SolveStore, Storage};
 use crate::contact::refine::{SHARES, SHARES_IN_WORDS, TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::{FrequencyRange, Rubber, RubberData, read_rubber_at};
+use crate::rubber::{FrequencyRange, RubberData, RubberModel, read_rubber_at};
 use crate::units::Units;
 pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
@@ -204,7 +204,7 @@ impl Bem {
         if let Some(measured) = material.measured {
             value["measured"] = json!(measured);
         }
-        if let Some(measured_c) = material.temperature.and_then(|law| law.measured_c) {
+        if let Some(measured_c) = material.temperature.as_ref().and_then(|law| law.measured_c) {
             value["measured_c"] = json!(measured_c);
         }
         value
@@ -267,7 +267,7 @@ pub fn run(
 /// As [`run`].
 pub fn missing(
     parameters: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[Surface],
     scans: &Scans,
     store: &SolveStore,
@@ -292,7 +292,7 @@ pub fn missing(
 /// [`require_attainable`] of the realisations that there are of every approximation.
 fn require_for_all(
     parameters: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[Surface],
     store: &SolveStore,
     watch: Watch,

@@ -13,7 +13,7 @@
 use super::CurveRow;
 use super::ensemble::FIRST_REALISATIONS;
 use crate::numerics::statistics::MeanEstimate;
-use crate::rubber::Rubber;
+use crate::rubber::{RubberModel, Viscoelastic};
 use crate::stages::realise::Surface;
 use crate::units::Units;
 use std::f64::consts::TAU;
@@ -48,7 +48,7 @@ impl LeftOut {
     /// # Errors
     /// Those of `solve`.
     pub fn find<E>(
-        rubber: &Rubber,
+        rubber: &RubberModel,
         surfaces: &[Surface],
         full: &[&[CurveRow]],
         tolerance: f64,
@@ -77,7 +77,7 @@ impl LeftOut {
 
     /// A curve of a reduced surface with the friction that is known without solving, and the bound
     /// of what is missing.
-    pub fn complete(&self, rubber: &Rubber, surface: &Surface, curve: &mut [CurveRow]) {
+    pub fn complete(&self, rubber: &RubberModel, surface: &Surface, curve: &mut [CurveRow]) {
         for (k, row) in curve.iter_mut().enumerate() {
             row.friction_coefficient += self.closed_form(rubber, surface, row);
             row.left_out_error = self.errors.get(k).copied().unwrap_or(0.0);
@@ -93,7 +93,7 @@ impl LeftOut {
     /// Friction of the short waves where all contacts follow them to their valleys. A wave of wavenumber
     /// `q` and amplitude `D` under full contact has the mean shear stress `q^2 D^2 Im E_r(q v) / 4`, which is that of
     /// its pressure wave `E_r q D / 2` on its slope; friction is this on the area over the mean pressure.
-    fn closed_form(&self, rubber: &Rubber, surface: &Surface, row: &CurveRow) -> f64 {
+    fn closed_form(&self, rubber: &RubberModel, surface: &Surface, row: &CurveRow) -> f64 {
         let shear = |wave: &usize| {
             let wave = surface.profile[*wave];
             let q = TAU / wave.wavelength;
@@ -130,7 +130,7 @@ impl LeftOut {
     /// Bound of the change of the mean friction at each area; none if it is too much at any.
     fn bound<E>(
         &self,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         surfaces: &[Surface],
         full: &[&[CurveRow]],
         tolerance: f64,

@@ -12,7 +12,7 @@ use super::worth::Worth;
 use super::{Bem, CurveRow, Given, Task};
 use crate::artifact::{Row, RunView, SolveStore, Table};
 use crate::numerics::statistics::delete_d_jackknife_95;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::StageError;
 use crate::stages::approximate::{REPLICATES, ReplicateRow};
 use crate::stages::kept::SolveTask;
@@ -202,7 +202,7 @@ fn of_one_speed(replicates: &[Replicate], curves: &[Vec<CurveRow>]) -> Vec<ScanE
 /// Those that a packed store does not have.
 pub(super) fn missing(
     parameters: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     scans: &Scans,
     store: &SolveStore,
 ) -> Result<Vec<Task>, StageError> {

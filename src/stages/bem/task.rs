@@ -6,7 +6,7 @@ use super::{Bem, CurveRow, Given};
 use crate::artifact::{Digest, SolveStore};
 use crate::contact::CurveValue;
 use crate::contact::curve::CurveError;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
 use crate::stages::{SolveError, StageError, Watch};
@@ -27,11 +27,11 @@ impl SolveTask for Task {
     type Parameters = Bem;
     type Output = CurveResult;
 
-    fn problem(&self, _: &Bem, rubber: &Rubber) -> Digest {
+    fn problem(&self, _: &Bem, rubber: &RubberModel) -> Digest {
         Digest::of_value(&problem(rubber, &self.surface, self.speed_mm_s))
     }
 
-    fn key(&self, parameters: &Bem, rubber: &Rubber) -> Digest {
+    fn key(&self, parameters: &Bem, rubber: &RubberModel) -> Digest {
         let mut key = json!({
             "stage": ["bem", super::REVISION],
             "problem": self.problem(parameters, rubber),
@@ -55,7 +55,7 @@ impl SolveTask for Task {
     fn solve(
         &self,
         parameters: &Bem,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<CurveResult, StageError> {

@@ -4,7 +4,7 @@ use super::ensemble::{CurveResult, Ensemble};
 use super::reduction::LeftOut;
 use super::{Bem, CurveRow, Task};
 use crate::artifact::SolveStore;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::kept::{SolveTask, Tally};
 use crate::stages::realise::Surface;
 use crate::stages::{StageError, Watch};
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// What the curves are made of.
 pub(super) struct Work<'a> {
     parameters: &'a Bem,
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     store: &'a SolveStore,
     watch: Watch<'a>,
     tally: Tally<'a>,
@@ -22,7 +22,7 @@ pub(super) struct Work<'a> {
 impl<'a> Work<'a> {
     pub fn new(
         parameters: &'a Bem,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         store: &'a SolveStore,
         watch: Watch<'a>,
     ) -> Self {

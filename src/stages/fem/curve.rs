@@ -7,7 +7,7 @@ use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, SteadyContact};
 use crate::multiscale::sampling::interpolation_errors;
 use crate::numerics::interpolation::CubicHermite;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::bem::{Given, Wanted};
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
@@ -50,7 +50,7 @@ impl<'a> Solver<'a> {
     pub fn new(
         columns: usize,
         parameters: &Fem,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         surface: &'a Surface,
         speed_mm_s: f64,
         store: &'a SolveStore,
@@ -64,6 +64,7 @@ impl<'a> Solver<'a> {
             let period = waves.iter().map(|wave| wave.wavelength).fold(0.0, f64::max);
             let profile = RigidProfile::from_waves(waves, period);
             let options = BlockOptions::of_profile(columns, &profile);
+            let rubber = rubber.maxwell()?;
             let (law, speed) = (rubber.finite_strain, speed_mm_s.mm_to_m());
             Ok(SteadyContact::new(rubber, law, speed, profile, options)?.interruptible(interrupted))
         });
@@ -286,7 +287,7 @@ fn values_at(
 
 /// What all solves of a curve have in common.
 pub(super) fn problem(
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surface: &Surface,
     speed_mm_s: f64,
     columns: usize,
@@ -334,7 +335,7 @@ mod tests {
         let surface = Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: vec![wave] };
         let (interrupted, parameters) = (Interrupt::default(), Fem::default());
         let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
-        let rubber = Rubber::table_2_1();
+        let rubber = RubberModel::from(crate::rubber::Rubber::table_2_1());
         let solver =
             || Solver::new(16, &parameters, &rubber, &surface, 10.0, &store, watch).unwrap();
         let refused = |mut solver: Solver, pressure: f64| match solver.point(pressure) {

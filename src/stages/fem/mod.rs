@@ -19,7 +19,7 @@ use super::{Stage, StageError};
 use crate::artifact::{ArtifactError, RunView, SolveStore};
 use crate::fem::cost::MeshCost;
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::realise::{Method, SurfaceKind};
 pub(crate) use curve::CurveResult as FemCurve;
 pub use rows::{FEM, FEM_SOLVES, FemCurveRow, FemSolveRow, schemas};
@@ -117,7 +117,7 @@ impl Fem {
 pub fn run(
     parameters: &Fem,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     store: &SolveStore,
     context: &mut Context,
@@ -143,7 +143,7 @@ pub fn run(
 pub fn missing(
     sweep: &Sweep,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[Surface],
     curves: &[CurveRow],
     store: &SolveStore,

@@ -7,7 +7,7 @@ use crate::fem::cost::MeshCost;
 use crate::fem::error::FemError;
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::COLUMNS_RANGE;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::bem::{Bem, CurveRow, Wanted};
 use crate::stages::kept::SolveTask;
 use crate::stages::micro::{columns, is_of};
@@ -62,12 +62,12 @@ impl SolveTask for Task {
     type Parameters = Sweep;
     type Output = CurveResult;
 
-    fn problem(&self, parameters: &Sweep, rubber: &Rubber) -> Digest {
+    fn problem(&self, parameters: &Sweep, rubber: &RubberModel) -> Digest {
         let columns = self.columns(&parameters.fem);
         Digest::of_value(&problem(rubber, &self.surface, self.speed_mm_s, columns))
     }
 
-    fn key(&self, parameters: &Sweep, rubber: &Rubber) -> Digest {
+    fn key(&self, parameters: &Sweep, rubber: &RubberModel) -> Digest {
         let mut key = json!({
             "stage": ["fem", super::REVISION],
             "problem": self.problem(parameters, rubber),
@@ -88,7 +88,7 @@ impl SolveTask for Task {
     fn solve(
         &self,
         parameters: &Sweep,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<CurveResult, StageError> {

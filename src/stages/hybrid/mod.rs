@@ -28,7 +28,7 @@ use crate::artifact::RunView;
 use crate::multiscale::correction::{CorrectionRule, MeanRule, Microscale, running_mean};
 use crate::multiscale::{LawError, SoftContact, SoftContactError, SoftContactSolution};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::surface::Wave;
 use crate::units::Units;
 use rayon::prelude::*;
@@ -111,7 +111,7 @@ pub enum RepulsiveLaw {
 pub fn run(
     parameters: &Hybrid,
     micro: &Micro,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {
@@ -183,7 +183,7 @@ fn pressed_flat(rows: &[HybridRow]) -> Vec<String> {
 struct Problem<'a> {
     parameters: &'a Hybrid,
     micro: &'a Micro,
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     surface: &'a Surface,
     parting: Parting,
 }

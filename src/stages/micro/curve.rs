@@ -9,7 +9,7 @@ use crate::fem::steady::{BlockOptions, COLUMNS_RANGE, SteadyContact};
 use crate::multiscale::sampling::{geometric, interpolation_errors, refinement};
 use crate::multiscale::{LawEnd, LocalLaw};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::SolveError;
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::surface::wave;
@@ -34,7 +34,7 @@ const MARGIN: f64 = 1.02;
 
 pub(super) struct MicroCurve<'a> {
     parameters: &'a Micro,
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     task: &'a Task,
     store: &'a SolveStore,
     interrupted: &'a Interrupt,
@@ -48,7 +48,7 @@ type SetUp<'a> = Box<dyn Fn() -> Result<SteadyContact, FemError> + 'a>;
 
 /// The microscale on the half-space.
 struct HalfSpace<'a> {
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     task: &'a Task,
     period: f64,
     interrupted: &'a Interrupt,
@@ -59,7 +59,7 @@ struct HalfSpace<'a> {
 impl<'a> MicroCurve<'a> {
     pub fn new(
         parameters: &'a Micro,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         task: &'a Task,
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
@@ -71,7 +71,7 @@ impl<'a> MicroCurve<'a> {
     fn on(
         columns: usize,
         parameters: &'a Micro,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         task: &'a Task,
         store: &'a SolveStore,
         interrupted: &'a Interrupt,
@@ -81,6 +81,7 @@ impl<'a> MicroCurve<'a> {
         let set_up: SetUp = Box::new(move || {
             let profile = RigidProfile::from_waves(&task.micro, period);
             let options = BlockOptions::of_profile(columns, &profile);
+            let rubber = rubber.maxwell()?;
             let (law, speed) = (rubber.finite_strain, task.speed_mm_s.mm_to_m());
             let contact = SteadyContact::new(rubber, law, speed, profile, options)?;
             let contact = match parameters.contact_length_mm {
@@ -318,7 +319,12 @@ impl HalfSpace<'_> {
 }
 
 /// What all samples of a microscale have in common.
-pub(super) fn problem(parameters: &Micro, rubber: &Rubber, task: &Task, columns: usize) -> Value {
+pub(super) fn problem(
+    parameters: &Micro,
+    rubber: &RubberModel,
+    task: &Task,
+    columns: usize,
+) -> Value {
     let mut problem = kept::problem_at_finite_deformation("micro", SOLVER_REVISION, rubber);
     problem["profile"] = json!(task.micro);
     problem["speed_mm_s"] = json!(task.speed_mm_s);

@@ -25,7 +25,7 @@ use crate::contact::refine::{SHARES, SHARES_IN_WORDS};
 use crate::fem::steady::COLUMNS_RANGE;
 use crate::multiscale::correction::Microscale;
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::surface::{Wave, wave};
 use crate::units::Units;
 pub(crate) use curve::law_of;
@@ -163,7 +163,7 @@ impl Micro {
 /// [`StageError::Interrupted`]. Solves that are done are kept.
 pub fn run(
     parameters: &Micro,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     store: &SolveStore,
     context: &mut Context,
@@ -216,7 +216,7 @@ pub(crate) fn between_samples(samples: &[&SampleRow]) -> Microscale {
 /// As [`run`].
 pub fn missing(
     parameters: &Micro,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surfaces: &[Surface],
     curves: &[CurveRow],
     store: &SolveStore,

@@ -8,7 +8,7 @@ use crate::fem::profile::RigidProfile;
 use crate::multiscale::scales::Scales;
 use crate::multiscale::{LocalLaw, SoftContact};
 use crate::numerics::Interrupt;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::bem::CurveRow;
 use crate::stages::kept::SolveTask;
 use crate::stages::realise::Surface;
@@ -178,11 +178,11 @@ impl SolveTask for Task {
     type Parameters = Micro;
     type Output = TaskResult;
 
-    fn problem(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
+    fn problem(&self, parameters: &Micro, rubber: &RubberModel) -> Digest {
         Digest::of_value(&problem(parameters, rubber, self, self.columns(parameters)))
     }
 
-    fn key(&self, parameters: &Micro, rubber: &Rubber) -> Digest {
+    fn key(&self, parameters: &Micro, rubber: &RubberModel) -> Digest {
         let surfaces: Vec<_> = self
             .surfaces
             .iter()
@@ -203,7 +203,7 @@ impl SolveTask for Task {
     fn solve(
         &self,
         parameters: &Micro,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         store: &SolveStore,
         watch: Watch,
     ) -> Result<TaskResult, StageError> {
@@ -253,7 +253,7 @@ impl Task {
     fn largest_pressure(
         &self,
         parameters: &Micro,
-        rubber: &Rubber,
+        rubber: &RubberModel,
         law: &LocalLaw,
         interrupt: &Interrupt,
     ) -> Result<f64, SolveError> {

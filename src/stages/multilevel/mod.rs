@@ -29,7 +29,7 @@ use super::realise::{SURFACES, Surface, read_surfaces};
 use super::{Stage, StageError, Watch};
 use crate::artifact::{RunView, SolveStore};
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::realise::Method;
 pub(crate) use bound::is_negligible;
 use ensemble::Ensemble;
@@ -144,7 +144,7 @@ fn areas_alone(bem: &Bem) -> Wanted {
 pub fn run(
     parameters: &Multilevel,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     store: &SolveStore,
     context: &mut Context,
@@ -172,7 +172,7 @@ pub fn run(
 pub fn missing(
     parameters: &Multilevel,
     bem: &Bem,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     run: &RunView,
     store: &SolveStore,
     watch: Watch,

@@ -3,7 +3,7 @@
 use super::Multilevel;
 use super::ensemble::Ensemble;
 use crate::artifact::SolveStore;
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::bem::{self, Bem, CurveRow};
 use crate::stages::fem::{self, FemCurve};
 use crate::stages::kept::{SolveTask, Tally};
@@ -31,7 +31,7 @@ impl Missing {
 pub(super) struct Work<'a> {
     sweep: fem::Sweep,
     bem: &'a Bem,
-    rubber: &'a Rubber,
+    rubber: &'a RubberModel,
     store: &'a SolveStore,
     watch: Watch<'a>,
     tally: Tally<'a>,
@@ -41,7 +41,7 @@ impl<'a> Work<'a> {
     pub fn new(
         parameters: &Multilevel,
         bem: &'a Bem,
-        rubber: &'a Rubber,
+        rubber: &'a RubberModel,
         store: &'a SolveStore,
         watch: Watch<'a>,
     ) -> Self {

@@ -45,7 +45,8 @@ static CONTRACT: Contract = Contract {
 
 fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let Job::Sinusoid(study) = request.job else { return None };
-    let rubber = request.rubber();
+    // `rubber` refuses a table before this.
+    let rubber = request.rubber().maxwell().ok()?;
     let run =
         move |inputs: &Inputs, context: &mut Context| run(study, rubber, &inputs.store()?, context);
     Some(Planned::new(study.resolved(rubber), run))

@@ -127,7 +127,7 @@ impl Problem {
         store: &SolveStore,
         interrupt: &Interrupt,
     ) -> Result<Vec<Outcome>, SolveError> {
-        let mut problem = kept::problem("sinusoid", SOLVER_REVISION, rubber);
+        let mut problem = kept::problem("sinusoid", SOLVER_REVISION, &rubber.clone().into());
         problem["problem"] = json!(self);
         Kept::open(store, problem, interrupt)?.take_or(&[], || match self.model {
             Model::HalfSpace => self.half_space(rubber, interrupt),

@@ -2,7 +2,7 @@
 //! half-space.
 
 use super::{FrictionRow, Model, TheoryConstants};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::stages::micro::{Parting, partings};
 use crate::stages::realise::{ArealRow, Surface};
 use crate::surface::{SineScale, Wave};
@@ -20,7 +20,7 @@ const UNSTATED: f64 = 0.1;
 pub(super) fn doubts(
     rows: &[FrictionRow],
     surfaces: &[Surface],
-    rubber: &Rubber,
+    rubber: &RubberModel,
     threshold: Option<f64>,
 ) -> Vec<String> {
     let (mut steep, mut growing, mut shortest_mm) = (Vec::new(), Vec::new(), f64::INFINITY);
@@ -102,7 +102,7 @@ fn mean_square_slope(waves: &[Wave]) -> f64 {
 fn still_growing(
     surface: &Surface,
     rows: &[&FrictionRow],
-    rubber: &Rubber,
+    rubber: &RubberModel,
 ) -> Option<(f64, Option<f64>)> {
     let present = || surface.profile.iter().filter(|wave| wave.amplitude != 0.0);
     let shortest = present().map(|wave| wave.wavelength).fold(f64::INFINITY, f64::min);
@@ -138,7 +138,7 @@ mod tests {
     use super::super::average::tests::curve;
     use super::super::{average, basis};
     use super::*;
-    use crate::rubber::MaxwellBranch;
+    use crate::rubber::{MaxwellBranch, Rubber};
     use crate::stages::realise::SurfaceKind;
 
     #[test]
@@ -162,6 +162,7 @@ mod tests {
         }
         let mut rubber = Rubber::elastic(4e6, 0.49);
         rubber.branches.push(MaxwellBranch { modulus: 1e8, relaxation_time: 1e-5 });
+        let rubber = RubberModel::from(rubber);
         let warnings = doubts(&rows, &surfaces, &rubber, None);
         // Slopes of 1.27 and 0.28; half of the friction against an error of 7 %.
         assert_eq!(warnings.len(), 2, "{warnings:?}");

@@ -42,7 +42,7 @@ use super::realise::{AREAL_SURFACES, read_surfaces};
 use super::{Stage, StageError};
 use crate::artifact::RunView;
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::Rubber;
+use crate::rubber::RubberModel;
 use crate::scans::file::MapLines;
 use accuracy::missed;
 pub use adhesion::{Adhesion, Law};
@@ -234,7 +234,7 @@ pub struct Corrected {
 pub fn run(
     parameters: &Tables,
     models: Models,
-    (rubber, adhesion): (&Rubber, Option<(&Adhesion, Option<f64>)>),
+    (rubber, adhesion): (&RubberModel, Option<(&Adhesion, Option<f64>)>),
     run: &RunView,
     context: &mut Context,
 ) -> Result<Vec<String>, StageError> {

@@ -4,7 +4,7 @@ use super::Model;
 use crate::artifact::{Row, RunView, Table};
 use crate::contact::ContactError;
 use crate::requirement::{InvalidRecipe, require};
-use crate::rubber::{Rubber, RubberError};
+use crate::rubber::{RubberError, RubberModel};
 use crate::stages::StageError;
 use crate::stages::bem::CurveRow;
 use crate::stages::bem::Given;
@@ -123,7 +123,7 @@ impl Row for TheoryRow {
 pub(super) fn predictions(
     theories: &[Theory],
     constants: &TheoryConstants,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     half_space: &[CurveRow],
     run: &RunView,
 ) -> Result<Vec<TheoryRow>, StageError> {
@@ -165,7 +165,7 @@ type Prediction = Box<dyn Fn(&CurveRow) -> (f64, f64, f64)>;
 fn prediction(
     theory: Theory,
     constants: &TheoryConstants,
-    rubber: &Rubber,
+    rubber: &RubberModel,
     surface: &Surface,
     speed: f64,
 ) -> Result<Prediction, RubberError> {

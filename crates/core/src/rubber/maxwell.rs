@@ -100,10 +100,20 @@ pub enum RubberError {
         /// The one before it in Hz.
         before_hz: f64,
     },
+    /// A table of moduli where relaxation times are needed.
+    #[error(
+        "rubber {rubber} is a table of moduli and has no relaxation times, which finite deformation needs: fit a Prony \
+         series to the table (`asperity rubber fit TABLE --to RUBBER.toml`) and give that file"
+    )]
+    NoRelaxationTimes {
+        /// Name of the rubber.
+        rubber: String,
+    },
     /// A modulus outside the measured frequencies.
     #[error(
         "the modulus of rubber {rubber} is not known at {frequency_hz:.3e} Hz: it was measured from {:.3e} to {:.3e} \
-         Hz; measure it there (at another temperature), or choose a speed and waves within that range",
+         Hz; measure it there (at another temperature), choose a speed and waves within that range, or hold the moduli \
+         at the ends of the range (extrapolate = \"hold\" in the rubber file)",
         .measured.lowest_hz,
         .measured.highest_hz
     )]
@@ -126,6 +136,7 @@ impl HasKind for RubberError {
             | Self::Law { .. }
             | Self::TooFewPoints { .. }
             | Self::NotAscending { .. }
+            | Self::NoRelaxationTimes { .. }
             | Self::NotMeasured { .. } => ErrorKind::Input,
         }
     }

@@ -3,7 +3,7 @@
 use crate::error_kind::{ErrorKind, HasKind};
 use std::f64::consts::LN_10;
 
-use super::VerticalShift;
+use super::{ShiftTable, VerticalShift};
 use serde::Serialize;
 
 /// Molar gas constant in J/(mol K), exact since the SI of 2019.
@@ -14,7 +14,7 @@ pub const ZERO_CELSIUS: f64 = 273.15;
 pub const HOTTEST_C: f64 = 150.0;
 
 /// How the shift factor depends on temperature; 1 at the reference temperature T_r.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShiftLaw {
     /// Williams, Landel & Ferry (J. Am. Chem. Soc. 77, 3701, 1955, doi:10.1021/ja01619a008):
@@ -30,10 +30,12 @@ pub enum ShiftLaw {
         /// Activation energy E_a in kJ/mol.
         activation_energy_kj_mol: f64,
     },
+    /// Measured factors, interpolated and never extrapolated.
+    Table(ShiftTable),
 }
 
 /// A shift law with its reference temperature.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TemperatureDependence {
     /// Temperature of the stated moduli in °C.
     pub reference_c: f64,
@@ -89,6 +91,48 @@ pub enum TemperatureError {
         /// Decades.
         log10_shift: f64,
     },
+    /// A temperature outside a table of measured factors.
+    #[error(
+        "there is no shift factor at {temperature_c} °C: factors were measured from {} to {} °C and a table is not \
+         extrapolated; choose a temperature within it, or a law (wlf or arrhenius) in place of the table",
+        .measured_c[0], .measured_c[1]
+    )]
+    OutsideTable {
+        /// The temperature in °C.
+        temperature_c: f64,
+        /// Lowest and highest temperature of the table in °C.
+        measured_c: [f64; 2],
+    },
+    /// Fewer than two measured factors.
+    #[error(
+        "temperature.shift_factors has {factors} row(s), a table needs at least two temperatures"
+    )]
+    TooFewFactors {
+        /// How many there are.
+        factors: usize,
+    },
+    /// A measured factor that is not a number.
+    #[error(
+        "the shift factor at {temperature_c} °C has the logarithm {log10_shift} to base 10, it must be a finite number \
+         of at most 60 decades"
+    )]
+    BadFactor {
+        /// The temperature in °C.
+        temperature_c: f64,
+        /// The logarithm.
+        log10_shift: f64,
+    },
+    /// Measured factors that do not fall with temperature.
+    #[error(
+        "the shift factor does not fall from {colder_c} to {hotter_c} °C, and rubber relaxes faster where it is hotter: \
+         check these two rows, are they inverse factors or doubled?"
+    )]
+    NotFalling {
+        /// The colder temperature in °C.
+        colder_c: f64,
+        /// The hotter one in °C.
+        hotter_c: f64,
+    },
     /// A coefficient of a law that is not positive and finite.
     #[error("temperature.{coefficient} is {value}, it must be positive and finite")]
     Coefficient {
@@ -126,6 +170,10 @@ impl HasKind for TemperatureError {
             | Self::NoTemperature { .. }
             | Self::BelowPole { .. }
             | Self::TooFar { .. }
+            | Self::OutsideTable { .. }
+            | Self::TooFewFactors { .. }
+            | Self::BadFactor { .. }
+            | Self::NotFalling { .. }
             | Self::Coefficient { .. }
             | Self::Range { .. }
             | Self::Vertical { .. } => ErrorKind::Input,
@@ -138,9 +186,9 @@ const MOST_DECADES: f64 = 60.0;
 
 impl ShiftLaw {
     /// `log10 a_T` at a temperature for a reference temperature, both in °C; not finite at the pole
-    /// of WLF.
+    /// of WLF. Beyond a table it is the factor at the nearer end, which [`TemperatureDependence::shift_factor`] refuses.
     pub fn log10_shift(&self, temperature_c: f64, reference_c: f64) -> f64 {
-        match *self {
+        match self {
             Self::Wlf { c1, c2_k } => {
                 let difference = temperature_c - reference_c;
                 -c1 * difference / (c2_k + difference)
@@ -150,6 +198,7 @@ impl ShiftLaw {
                 let energy = 1e3 * activation_energy_kj_mol / (GAS_CONSTANT * LN_10);
                 energy * (inverse(temperature_c) - inverse(reference_c))
             }
+            Self::Table(table) => table.log10_shift(temperature_c, reference_c),
         }
     }
 
@@ -158,6 +207,7 @@ impl ShiftLaw {
         match self {
             Self::Wlf { .. } => "wlf",
             Self::Arrhenius { .. } => "arrhenius",
+            Self::Table(_) => "shift_factors",
         }
     }
 }
@@ -170,6 +220,8 @@ impl TemperatureDependence {
     pub fn validate(&self) -> Result<(), TemperatureError> {
         above_zero(self.reference_c)?;
         let coefficients = match self.law {
+            // Its constructor has checked it.
+            ShiftLaw::Table(_) => vec![],
             ShiftLaw::Wlf { c1, c2_k } => vec![("wlf.c1", c1), ("wlf.c2_k", c2_k)],
             ShiftLaw::Arrhenius { activation_energy_kj_mol } => {
                 vec![("arrhenius.activation_energy_kj_mol", activation_energy_kj_mol)]
@@ -199,6 +251,10 @@ impl TemperatureDependence {
     pub fn shift_factor(&self, temperature_c: f64) -> Result<f64, TemperatureError> {
         above_zero(temperature_c)?;
         let reference_c = self.reference_c;
+        if let ShiftLaw::Table(table) = &self.law {
+            table.require(reference_c)?;
+            table.require(temperature_c)?;
+        }
         if let ShiftLaw::Wlf { c2_k, .. } = self.law
             && temperature_c <= reference_c - c2_k
         {
@@ -220,15 +276,16 @@ impl TemperatureDependence {
 
     /// The same dependence about another reference temperature in °C; one that has a shift factor.
     pub fn about(&self, reference_c: f64) -> Self {
-        let law = match self.law {
+        let law = match &self.law {
             ShiftLaw::Wlf { c1, c2_k } => {
                 let new = c2_k + reference_c - self.reference_c;
                 ShiftLaw::Wlf { c1: c1 * c2_k / new, c2_k: new }
             }
-            arrhenius @ ShiftLaw::Arrhenius { .. } => arrhenius,
+            // Both state differences between any two temperatures.
+            same @ (ShiftLaw::Arrhenius { .. } | ShiftLaw::Table(_)) => same.clone(),
         };
         let vertical = self.vertical.map(|shift| shift.about(reference_c, self.reference_c));
-        Self { reference_c, law, vertical, ..*self }
+        Self { reference_c, law, vertical, measured_c: self.measured_c }
     }
 
     /// A warning where the reference temperature lies outside those that the law was fitted to, or seems to be in K.

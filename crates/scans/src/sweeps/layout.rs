@@ -10,17 +10,27 @@ use std::str::FromStr;
 pub(super) enum Wanted {
     Sweeps,
     Factors,
+    Strains,
 }
 
 impl Wanted {
     /// The quantities without which there is no table, each with its alternatives.
     fn needed(self) -> Vec<[Quantity; 2]> {
         use Quantity::{
-            Frequency, Log10Shift, Loss, LossFactor, ShiftFactor, Storage, Temperature,
+            Frequency, Log10Shift, Loss, LossFactor, ShiftFactor, Storage, Strain, Temperature,
         };
         match self {
             Self::Sweeps => vec![[Frequency, Frequency], [Storage, Storage], [Loss, LossFactor]],
             Self::Factors => vec![[Temperature, Temperature], [Log10Shift, ShiftFactor]],
+            Self::Strains => vec![[Strain, Strain], [Storage, Storage], [Loss, LossFactor]],
+        }
+    }
+
+    /// The quantities that are read where they are there.
+    fn optional(self) -> Vec<Quantity> {
+        match self {
+            Self::Strains => vec![Quantity::Temperature, Quantity::Frequency],
+            Self::Sweeps | Self::Factors => vec![Quantity::Temperature],
         }
     }
 
@@ -34,6 +44,10 @@ impl Wanted {
             }
             Self::Factors => {
                 "give a header such as `temperature_c,log10_shift` (or temperature_k, shift_factor)"
+            }
+            Self::Strains => {
+                "give a header such as `temperature_c,frequency_hz,strain_percent,storage_mpa,loss_mpa` (also \
+                 strain_fraction, loss_factor, _pa, _kpa; temperature and frequency may be left out)"
             }
         }
     }
@@ -217,8 +231,10 @@ fn chosen(columns: Vec<(u8, Column)>, wanted: Wanted) -> Result<Vec<Column>, Str
         let there = |quantity: &&Quantity| columns.iter().any(|(_, c)| c.quantity == **quantity);
         quantities.extend(any.iter().find(there));
     }
-    if !quantities.contains(&Quantity::Temperature) {
-        quantities.push(Quantity::Temperature);
+    for quantity in wanted.optional() {
+        if !quantities.contains(&quantity) {
+            quantities.push(quantity);
+        }
     }
     let mut chosen = Vec::new();
     for quantity in quantities {

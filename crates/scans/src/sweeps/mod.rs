@@ -10,6 +10,7 @@
 //! | `grid` | a file as rows of cells |
 //! | `names`, `layout` | quantity and unit of a column by its name; which column holds what |
 //! | `rows` | the numbers below a header |
+//! | `tables` | master curves as points, and strain sweeps |
 //! | `doubts` | warnings of numbers that look like a mistake of units or columns |
 
 #[cfg(test)]
@@ -19,11 +20,13 @@ mod grid;
 mod layout;
 mod names;
 mod rows;
+mod tables;
 #[cfg(test)]
 mod tests;
 
 pub use doubts::doubts;
 pub use layout::DescribedColumn;
+pub use tables::{StrainUnit, read_master_curve, read_strain_sweeps};
 
 use crate::description::{DecimalMark, Separator};
 use asperity_core::error_kind::{ErrorKind, HasKind};
@@ -42,8 +45,8 @@ const SAME_SWEEP_K: f64 = 0.5;
 const LARGEST_FILE: u64 = 64 << 20;
 
 /// How the names of columns begin that this program documents.
-const OWN_NAMES: [&str; 5] =
-    ["frequency_", "angular_frequency_", "storage_", "loss_", "temperature_"];
+const OWN_NAMES: [&str; 6] =
+    ["frequency_", "angular_frequency_", "storage_", "loss_", "temperature_", "strain_"];
 
 /// Where something is wrong, if it is in one line, and what.
 pub(super) type Located = (Option<u64>, String);

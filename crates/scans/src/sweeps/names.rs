@@ -33,7 +33,7 @@ impl Quantity {
         }
     }
 
-    /// Whether it has a unit.
+    /// Whether it has a unit that a header must state; a strain may have one.
     pub fn has_unit(self) -> bool {
         matches!(self, Self::Frequency | Self::Storage | Self::Loss | Self::Temperature)
     }
@@ -48,6 +48,8 @@ pub(super) enum Unit {
     Pascal(f64),
     Celsius,
     Kelvin,
+    Percent,
+    Fraction,
 }
 
 impl Unit {
@@ -61,6 +63,8 @@ impl Unit {
             Self::Pascal(_) => "Pa",
             Self::Celsius => "°C",
             Self::Kelvin => "K",
+            Self::Percent => "%",
+            Self::Fraction => "parts of one",
         }
     }
 
@@ -70,6 +74,7 @@ impl Unit {
             Self::Hertz | Self::RadPerSecond => quantity == Quantity::Frequency,
             Self::Pascal(_) => matches!(quantity, Quantity::Storage | Quantity::Loss),
             Self::Celsius | Self::Kelvin => quantity == Quantity::Temperature,
+            Self::Percent | Self::Fraction => quantity == Quantity::Strain,
         }
     }
 }
@@ -123,6 +128,8 @@ pub(super) fn unit(text: &str, quantity: Quantity) -> Option<Unit> {
         "gpa" => Unit::Pascal(1e9),
         "°c" | "c" | "ºc" | "degc" | "celsius" => Unit::Celsius,
         "k" | "kelvin" => Unit::Kelvin,
+        "%" | "percent" => Unit::Percent,
+        "fraction" | "m/m" | "mm/mm" | "1" => Unit::Fraction,
         _ => return None,
     };
     found.fits(quantity).then_some(found)
@@ -143,7 +150,8 @@ fn split_unit(cell: &str) -> (&str, Option<&str>) {
     if let Some((name, unit)) = cell.split_once('/') {
         return (name, Some(unit));
     }
-    let suffixes = ["_rad_s", "_hz", "_mpa", "_kpa", "_gpa", "_pa", "_c", "_k"];
+    let suffixes =
+        ["_rad_s", "_hz", "_mpa", "_kpa", "_gpa", "_pa", "_c", "_k", "_percent", "_fraction"];
     let suffix = suffixes.iter().find(|suffix| cell.to_lowercase().ends_with(*suffix));
     match suffix {
         Some(suffix) => {
@@ -229,6 +237,9 @@ mod tests {
             ("##Temp./°C", Temperature, Some(Unit::Celsius)),
             ("temperature_k", Temperature, Some(Unit::Kelvin)),
             ("T [K]", Temperature, Some(Unit::Kelvin)),
+            ("strain_percent", Strain, Some(Unit::Percent)),
+            ("Strain (%)", Strain, Some(Unit::Percent)),
+            ("strain", Strain, None),
             ("log10_shift", Log10Shift, None),
             ("shift_factor", ShiftFactor, None),
         ];

@@ -198,6 +198,27 @@ impl Record {
         Ok(Some(celsius))
     }
 
+    /// Angular frequency in rad/s, where there is a column of it.
+    pub fn angular_frequency(&self) -> Result<Option<f64>, Located> {
+        let there = self.value(Quantity::Frequency).is_some();
+        there.then(|| self.positive(Quantity::Frequency)).transpose()
+    }
+
+    /// The unit of the strain in the header, and the strain in it.
+    pub fn strain(&self) -> Result<(Option<Unit>, f64), Located> {
+        let unit = self.value(Quantity::Strain).and_then(|(column, ..)| column.unit);
+        Ok((unit, self.positive(Quantity::Strain)?))
+    }
+
+    /// Storage and loss modulus in Pa.
+    pub fn moduli(&self) -> Result<[f64; 2], Located> {
+        let storage = self.positive(Quantity::Storage)?;
+        Ok(match self.value(Quantity::Loss) {
+            Some(_) => [storage, self.positive(Quantity::Loss)?],
+            None => [storage, self.positive(Quantity::LossFactor)? * storage],
+        })
+    }
+
     pub fn given_shift(&self) -> Result<GivenShift, Located> {
         let temperature_c = self.temperature_c()?.unwrap_or(f64::NAN);
         let log10_shift = match self.value(Quantity::Log10Shift) {

@@ -165,7 +165,7 @@ fn wlf(shifts: &[ShiftFactor], reference_c: f64) -> Option<FittedLaw> {
 mod tests {
     use super::*;
 
-    fn factors(law: ShiftLaw, temperatures: &[f64]) -> Vec<ShiftFactor> {
+    fn factors(law: &ShiftLaw, temperatures: &[f64]) -> Vec<ShiftFactor> {
         let factor = |&temperature_c: &f64| ShiftFactor {
             temperature_c,
             log10_shift: law.log10_shift(temperature_c, 20.0),
@@ -180,7 +180,7 @@ mod tests {
     fn exact_factors_give_their_law() {
         let temperatures = [-40.0, -20.0, 0.0, 20.0, 40.0, 60.0];
         for (c1, c2_k) in [(8.86, 101.6), (17.44, 70.0), (3.0, 250.0)] {
-            let laws = fit_laws(&factors(ShiftLaw::Wlf { c1, c2_k }, &temperatures), 20.0);
+            let laws = fit_laws(&factors(&ShiftLaw::Wlf { c1, c2_k }, &temperatures), 20.0);
             let ShiftLaw::Wlf { c1: found1, c2_k: found2 } = laws[0].law else {
                 panic!("{:?}", laws[0])
             };
@@ -189,7 +189,7 @@ mod tests {
             assert!(laws[1].residual_decades > 0.01, "{:?}", laws[1]);
         }
         let law = ShiftLaw::Arrhenius { activation_energy_kj_mol: 120.0 };
-        let laws = fit_laws(&factors(law, &temperatures), 20.0);
+        let laws = fit_laws(&factors(&law, &temperatures), 20.0);
         let ShiftLaw::Arrhenius { activation_energy_kj_mol } = laws[0].law else {
             panic!("{:?}", laws[0])
         };
@@ -218,11 +218,11 @@ mod tests {
     #[test]
     fn few_factors_give_arrhenius_alone() {
         let law = ShiftLaw::Wlf { c1: 8.86, c2_k: 101.6 };
-        let laws = fit_laws(&factors(law, &[0.0, 20.0, 40.0]), 20.0);
+        let laws = fit_laws(&factors(&law, &[0.0, 20.0, 40.0]), 20.0);
         assert_eq!(laws.len(), 1);
         assert!(laws[0].confidence_95.is_some());
-        let laws = fit_laws(&factors(law, &[20.0, 40.0]), 20.0);
+        let laws = fit_laws(&factors(&law, &[20.0, 40.0]), 20.0);
         assert_eq!((laws.len(), &laws[0].confidence_95), (1, &None));
-        assert!(fit_laws(&factors(law, &[20.0]), 20.0).is_empty());
+        assert!(fit_laws(&factors(&law, &[20.0]), 20.0).is_empty());
     }
 }

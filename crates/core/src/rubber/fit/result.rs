@@ -226,10 +226,10 @@ impl MasterCurve {
             [temperatures().fold(f64::INFINITY, f64::min), temperatures().fold(-300.0, f64::max)];
         let temperature = self.laws.first().zip(self.reference_c).map(|(fitted, reference_c)| {
             let vertical = self.vertical.map(|vertical| vertical.law);
-            let law = fitted.law;
+            let law = fitted.law.clone();
             TemperatureDependence { reference_c, law, measured_c: Some(measured_c), vertical }
         });
-        RubberData { rubber, measured: Some(self.measured), temperature }
+        RubberData { measured: Some(self.measured), temperature, ..rubber.into() }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::tests::{broad, normal};
 use super::*;
-use crate::rubber::{Rubber, ShiftLaw, TemperatureDependence, VerticalShift};
+use crate::rubber::{Rubber, ShiftLaw, TemperatureDependence, VerticalShift, Viscoelastic};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use std::f64::consts::{LN_10, TAU};

@@ -4,7 +4,7 @@ use crate::error_kind::{ErrorKind, HasKind};
 use std::ops::RangeInclusive;
 
 /// One measured point, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SweepPoint {
     /// Angular frequency in rad/s.
     pub angular_frequency: f64,
