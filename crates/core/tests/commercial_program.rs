@@ -63,7 +63,7 @@ fn rubber() -> Option<MeasuredModuli> {
     Some(MeasuredModuli::new("S100", 0.5, &merged).unwrap())
 }
 
-/// `log10 v`, and `ln` of the theory over the program for area and friction, at every third of the speeds.
+/// `log10 v`, and `ln` of the theory over the program for area and friction, at every sixth of the speeds.
 fn deviations(options: PerssonOptions) -> Option<Vec<[f64; 3]>> {
     let rubber = rubber()?;
     let spectrum = numbers("idiada_psd.txt")?;
@@ -73,7 +73,7 @@ fn deviations(options: PerssonOptions) -> Option<Vec<[f64; 3]>> {
     let frictions = numbers("program_S100_mu_visc_linear.txt")?;
     assert_eq!((areas.len(), frictions.len()), (300, 300));
     let theory = IsotropicPersson::new(&surface, &rubber, surface.band(), options).unwrap();
-    let rows = areas.iter().zip(&frictions).step_by(3);
+    let rows = areas.iter().zip(&frictions).step_by(6);
     let deviation = |(area, friction): (&Vec<f64>, &Vec<f64>)| {
         assert_eq!(area[0], friction[0]);
         let at = theory.at(10_f64.powf(area[0]), PRESSURE).unwrap();
@@ -100,31 +100,37 @@ fn summary(rows: &[[f64; 3]], column: usize, [from, to]: [f64; 2]) -> [f64; 3] {
     [mean, largest, within]
 }
 
+/// The program is met within 3 % where its moduli are known well: the area up to 1 m/s, friction from 0.1 mm/s on but for
+/// single speeds. Above 1 m/s the waves excite 1e8 Hz and more, where the modulus grows with the power 0.4 to 0.6 of the
+/// frequency: the area is 7 to 18 % below the program's, which a shift factor of 76 instead of the interpolated 92 would
+/// explain. What the program takes at 20 °C, between measurements at 10.5 and 20.2 °C, is not stated.
 #[test]
 fn the_reduced_diffusion_is_the_commercial_program_but_for_a_few_percent() {
     // Their values have three digits.
     let options = PerssonOptions { gamma: 0.5, diffusion: Diffusion::Reduced, tolerance: 1e-4 };
     let Some(rows) = deviations(options) else { return };
-    for [from, to] in [[-6.0, -4.0], [-4.0, -2.0], [-2.0, 0.0], [0.0, 1.0], [1.0, 2.0], [2.0, 4.0]]
-    {
-        eprintln!(
-            "10^{from} to 10^{to} m/s: area {:.4?}, friction {:.4?}",
-            summary(&rows, 1, [from, to]),
-            summary(&rows, 2, [from, to])
-        );
-    }
-    eprintln!(
-        "all: area {:.4?}, friction {:.4?}",
-        summary(&rows, 1, [-6.0, 4.0]),
-        summary(&rows, 2, [-6.0, 4.0])
-    );
+    let area = |range| summary(&rows, 1, range);
+    let friction = |range| summary(&rows, 2, range);
+    let [mean, largest, within] = area([-6.0, 0.0]);
+    assert!(mean.abs() < 0.02 && largest < 0.035 && within > 0.9, "{:?}", area([-6.0, 0.0]));
+    let [_, largest, _] = area([0.0, 4.0]);
+    assert!(largest < 0.19, "{largest}");
+    let [mean, largest, within] = friction([-4.0, 4.0]);
+    assert!(mean.abs() < 0.025 && largest < 0.06 && within > 0.8, "{:?}", friction([-4.0, 4.0]));
+    // The slowest speeds excite the lowest measured frequencies.
+    let [_, largest, _] = friction([-6.0, -4.0]);
+    assert!(largest < 0.09, "{largest}");
 }
 
+/// With γ on friction alone, area and friction are 0.70 of the program's at all speeds up to 1 m/s: a convention, not a
+/// modulus.
 #[test]
-fn without_the_reduction_the_area_is_a_constant_factor_off() {
+fn without_the_reduction_area_and_friction_are_a_constant_factor_off() {
     let options = PerssonOptions { gamma: 0.5, diffusion: Diffusion::Full, tolerance: 1e-4 };
     let Some(rows) = deviations(options) else { return };
-    let [area, ..] = summary(&rows, 1, [-6.0, 0.0]);
-    let [friction, ..] = summary(&rows, 2, [-6.0, 0.0]);
-    eprintln!("{area:.4} {friction:.4}");
+    for column in [1, 2] {
+        let [mean, largest, _] = summary(&rows, column, [-4.5, 0.0]);
+        assert!((-0.38..-0.34).contains(&mean), "{mean}");
+        assert!(largest + mean < 0.06, "{largest} {mean}");
+    }
 }

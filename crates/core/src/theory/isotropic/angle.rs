@@ -17,8 +17,8 @@ pub(super) struct AngularMeans {
     pub unmeasured_loss: f64,
 }
 
-/// Where `1 / cosh` is below round-off.
-const LAST: f64 = 38.0;
+/// Where what is left of the weights, `4/π exp(-t)`, is below 1e-13.
+const LAST: f64 = 31.0;
 
 impl AngularMeans {
     /// The means at an angular frequency `ω` in rad/s of the waves along the sliding, by the trapezoidal rule with the step
