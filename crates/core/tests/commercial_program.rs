@@ -6,8 +6,8 @@
 //!
 //! - γ = 1/2 in `S = γ + (1 - γ) P²`, which reduces friction and the spread of the pressure ([`Diffusion::Reduced`]);
 //! - ν = 1/2;
-//! - all waves of the spectrum, up to its end at 1.05128e6 rad/m (the README of the set says 1.05129e5, a tenth: with that
-//!   the area is three times as large);
+//! - all waves of the spectrum, up to its end at 1.05128e6 rad/m (the README of the set says 1.05129e5, a tenth, with which
+//!   the area is 4 to 13 times as large);
 //! - moduli interpolated in the log plane, and the logarithm of the shift factor in the temperature.
 
 use asperity_core::rubber::MeasuredModuli;

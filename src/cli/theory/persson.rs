@@ -149,13 +149,12 @@ impl PerssonCommand {
         let surface = self.surface.surface()?;
         surface.warnings.iter().for_each(|warning| warn(warning));
         let (rows, flash) = self.rows(&material, &surface)?;
-        for speed in self.extreme_speeds() {
-            let excited = material.warnings(surface.wavelengths(), speed.mm_to_m());
-            if let Some(warning) = excited.first() {
-                warn(warning);
-                break;
-            }
-        }
+        let excited = self
+            .extreme_speeds()
+            .map(|speed| material.warnings(surface.wavelengths(), speed.mm_to_m()));
+        let all = excited.concat();
+        let first = |(k, warning): &(usize, &String)| !all[..*k].contains(warning);
+        all.iter().enumerate().filter(first).for_each(|(_, warning)| warn(warning));
         let unmeasured = rows.iter().map(|row| row.unmeasured_share).fold(0.0, f64::max);
         if unmeasured > UNMEASURED {
             warn(&format!(

@@ -21,7 +21,7 @@ use asperity::surface::correlation::correlate_scans;
 use asperity::surface::map::form::{FormOfMap, remove_form};
 use asperity::surface::map::spectrum::ArealSpectrum;
 use asperity::surface::spectrum::{IsotropicSpectrum, Window, power_spectra};
-use asperity::surface::{Conditioning, HeightMap, PowerSpectrum, RawScan};
+use asperity::surface::{Conditioning, HeightMap, LineScan, PowerSpectrum, RawScan};
 
 /// Bins of the spectrum of a scan or map in a decade, as `[characterise]` has them.
 const BINS_PER_DECADE: usize = 20;
@@ -195,7 +195,7 @@ impl SurfaceOptions {
         let spectra = power_spectra(&scans, &correlations, Window::Hann).map_err(in_error(path))?;
         let bins =
             PowerSpectrum::log_binned_over(&spectra, BINS_PER_DECADE).map_err(in_error(path))?;
-        let longest = scans.iter().map(|scan| scan.length()).fold(f64::INFINITY, f64::min);
+        let longest = scans.iter().map(LineScan::length).fold(f64::INFINITY, f64::min);
         let kept = bins.iter().filter(|bin| bin.wavenumber >= LEAST_WAVES * TAU / longest);
         let (wavenumbers, densities): (Vec<f64>, Vec<f64>) =
             kept.filter(|bin| bin.density > 0.0).map(|bin| (bin.wavenumber, bin.density)).unzip();
