@@ -150,10 +150,23 @@ fn heat_is_given_beside_the_prediction_without() {
 #[test]
 fn a_scan_and_a_map_are_surfaces_too() {
     let folder = tempfile::tempdir().unwrap();
-    let map = project("data/scans/map/road.x3p");
-    let command =
-        format!("--map {} {LOAD} --shortest-wavelength-mm 0.25 --json --quiet", map.display());
+    // Heights in um on 6.4 by 6.4 mm: waves in many directions, each with half the amplitude of the one before.
+    let height = |i: u32, j: u32| -> f64 {
+        let wave = |k: u32| {
+            let (m, n) = (f64::from(3 + 2 * k), f64::from(5 * k % 7) - 3.0);
+            let turns = (m * f64::from(i) + n * f64::from(j)) / 64.0;
+            100.0 * 0.5_f64.powi(k as i32) * (std::f64::consts::TAU * turns + f64::from(k)).cos()
+        };
+        (0..8).map(wave).sum()
+    };
+    let row = |j: u32| (0..64).map(|i| format!("{:.6} ", height(i, j))).collect::<String>() + "\n";
+    fs::write(folder.path().join("map.txt"), (0..64).map(row).collect::<String>()).unwrap();
+    let command = format!("--map map.txt --map-unit um --size-mm 6.4 {LOAD} --json --quiet");
     let map = theory(folder.path(), &command).json();
+    // Maps with missing heights are refused, as by `solve areal`.
+    let gaps = project("data/scans/map/road.x3p");
+    let message = theory(folder.path(), &format!("--map {} {LOAD}", gaps.display())).error(2);
+    assert!(message.contains("heights are missing"), "{message}");
     let scan = project("data/scans/specimen/scan_01.txt");
     let text =
         "--separator semicolon --comment # --x-column x_mm --x-unit mm --z-column z_um --z-unit um";
