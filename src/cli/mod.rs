@@ -30,6 +30,7 @@
 //! | `status` | which results are up to date |
 //! | `sweep` | many cases on many machines |
 //! | `synth` | synthetic scans of asphalt |
+//! | `theory` | what older theories predict, without a contact being solved |
 //! | `threads` | the threads of a command |
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
@@ -59,6 +60,7 @@ mod solve;
 mod status;
 mod sweep;
 mod synth;
+mod theory;
 mod threads;
 mod values;
 mod verify;
@@ -101,6 +103,9 @@ enum Command {
     /// Solve a single contact problem, without a recipe.
     #[command(subcommand)]
     Solve(solve::Solve),
+    /// Predict friction by an older theory, without a contact being solved.
+    #[command(subcommand)]
+    Theory(theory::Theory),
     /// Make a rubber from measured moduli.
     #[command(subcommand)]
     Rubber(rubber::Rubber),
@@ -132,6 +137,7 @@ impl Arguments {
             Command::Compare(command) => command.run(self.quiet),
             Command::Cutoff(command) => command.run(self.quiet),
             Command::Solve(command) => command.run(self.quiet),
+            Command::Theory(command) => command.run(self.quiet),
             Command::Rubber(command) => command.run(self.quiet),
             Command::Adhesion(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),

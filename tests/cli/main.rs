@@ -26,6 +26,7 @@ mod solve_areal;
 mod solve_fem;
 mod start;
 mod synth;
+mod theory;
 
 use outcome::Outcome;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,7 @@ const POSITIONED: usize = 3;
 
 /// Heights on a grid.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Map {
+pub(in crate::cli) struct Map {
     /// Points along x and y.
     pub points: [usize; 2],
     /// Periods along x and y in m.
@@ -30,7 +30,7 @@ pub(super) struct Map {
 ///
 /// # Errors
 /// [`CliError::Input`] with the file and the line or point.
-pub(super) fn read_map(
+pub(in crate::cli) fn read_map(
     path: &Path,
     unit: Option<LengthUnit>,
     size: Option<[Option<f64>; 2]>,

@@ -7,12 +7,13 @@ use clap::Args;
 
 use crate::cli::{CliError, values};
 use asperity::rubber::{
-    FiniteStrainRubber, FrequencyRange, Rubber, RubberData, RubberModel, read_rubber_data,
+    FiniteStrainRubber, FrequencyRange, Rubber, RubberData, RubberModel, TemperatureDependence,
+    read_rubber_data,
 };
 
 /// The rubber.
 #[derive(Debug, Args)]
-pub(super) struct MaterialOptions {
+pub(in crate::cli) struct MaterialOptions {
     /// Rubber as a TOML file, see data/rubber [default: Table 2.1 of the thesis].
     #[arg(long, value_name = "FILE", conflicts_with_all = ["modulus", "poisson"])]
     rubber: Option<PathBuf>,
@@ -29,14 +30,14 @@ pub(super) struct MaterialOptions {
 }
 
 /// The rubber at its temperature.
-pub(super) struct Material {
+pub(in crate::cli) struct Material {
     data: RubberData,
     /// Suspicious values of its file, if it has one.
     oddities: Vec<String>,
 }
 
 impl MaterialOptions {
-    pub(super) fn material(&self) -> Result<Material, CliError> {
+    pub(in crate::cli) fn material(&self) -> Result<Material, CliError> {
         let data = match (&self.rubber, self.modulus, self.poisson) {
             (Some(path), _, _) => read_rubber_data(path)?,
             (None, Some(modulus_mpa), Some(poisson_ratio)) => {
@@ -72,20 +73,30 @@ impl MaterialOptions {
         }
     }
 
+    /// The temperature asked for in °C; none for that of the moduli.
+    pub(in crate::cli) fn temperature_c(&self) -> Option<f64> {
+        self.temperature_c
+    }
+
     /// The file of the rubber, if it has one.
-    pub(super) fn file(&self) -> Option<&Path> {
+    pub(in crate::cli) fn file(&self) -> Option<&Path> {
         self.rubber.as_deref()
     }
 }
 
 impl Material {
-    pub(super) fn rubber(&self) -> &RubberModel {
+    pub(in crate::cli) fn rubber(&self) -> &RubberModel {
         &self.data.rubber
+    }
+
+    /// How the rubber shifts from its temperature to others, if it is known.
+    pub(in crate::cli) fn temperature_dependence(&self) -> Option<TemperatureDependence> {
+        self.data.temperature
     }
 
     /// Warnings: what looks like a mistake in its file, and extrapolations beyond the measurement of the rubber, which are
     /// the shift to its temperature and the frequencies that waves of these lengths in m excite at a speed in m/s.
-    pub(super) fn warnings(&self, wavelengths: Vec<f64>, speed: f64) -> Vec<String> {
+    pub(in crate::cli) fn warnings(&self, wavelengths: Vec<f64>, speed: f64) -> Vec<String> {
         let excited = FrequencyRange::excited(wavelengths, [speed]);
         let extrapolations = self.data.extrapolations(excited);
         self.oddities.iter().cloned().chain(extrapolations).collect()

@@ -31,6 +31,8 @@ use std::path::Path;
 use clap::Subcommand;
 
 use super::CliError;
+pub(super) use map_file::read_map;
+pub(super) use material::{Material, MaterialOptions};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Solve {

@@ -13,6 +13,7 @@
 //! T.D.B. Jacobs, T. Junge, L. Pastewka, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001,
 //! doi:10.1088/2051-672X/aa51f8. Whether a surface is isotropic no single line can tell.
 
+use crate::error_kind::{ErrorKind, HasKind};
 use statrs::function::beta::{beta, beta_reg};
 use statrs::function::gamma::gamma;
 use std::f64::consts::PI;
@@ -48,6 +49,26 @@ pub enum IsotropicError {
         /// The density in m³.
         density: f64,
     },
+    /// A point of a spectrum over the plane that is not one.
+    #[error(
+        "wavenumber {wavenumber} rad/m with density {density} m4: both must be positive, the wavenumbers ascending; leave the point out"
+    )]
+    NoDensity {
+        /// The wavenumber in rad/m.
+        wavenumber: f64,
+        /// The density in m⁴.
+        density: f64,
+    },
+}
+
+impl HasKind for IsotropicError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Count { .. } | Self::NoPowerLaw { .. } | Self::NoDensity { .. } => {
+                ErrorKind::Input
+            }
+        }
+    }
 }
 
 /// Two-dimensional density in m⁴ at the wavenumber `q` (rad/m) of an isotropic self-affine surface,

@@ -15,18 +15,21 @@
 //! | `bins` | means over bins of equal width in the logarithm of the wavenumber |
 //! | `hurst` | Hurst exponent from the slope |
 //! | `isotropic` | the spectrum of an isotropic surface from that of a line across it |
+//! | `tabulated` | the spectrum of an isotropic surface as a table, with its roughness |
 //! | `agreement` | comparison with the height-difference correlation |
 
 mod agreement;
 mod bins;
 mod hurst;
 mod isotropic;
+mod tabulated;
 mod window;
 
 pub use agreement::{Agreement, LENGTHS_PER_LAG, agreement};
 pub use bins::SpectrumBin;
 pub use hurst::{HurstError, SpectralHurst, fit_hurst_exponent};
 pub use isotropic::{IsotropicError, abel_inverse, self_affine_isotropic};
+pub use tabulated::IsotropicSpectrum;
 pub use window::Window;
 
 use super::{HeightDifferenceCorrelation, LineScan};
