@@ -28,6 +28,7 @@ const MECHANICS: &[&str] = &[
     "surface",
     "rubber",
     "reference",
+    "heat",
     "contact",
     "multiscale",
     "fem",
