@@ -27,6 +27,7 @@
 //! |---|---|
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
 //! | [`rubber`] | generalised Maxwell model, its fit to measured moduli; here with its file |
+//! | [`heat`] | heat source and temperature of a sliding contact |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
@@ -61,7 +62,7 @@
 //! are NaN and nothing else is.
 
 pub use asperity_core::{
-    contact, error_kind, fem, multiscale, numerics, reference, surface, theory,
+    contact, error_kind, fem, heat, multiscale, numerics, reference, surface, theory,
 };
 pub use asperity_files as files;
 pub use asperity_scans as scans;

@@ -20,6 +20,7 @@ mod rubber_sweeps;
 mod solve;
 mod solve_areal;
 mod solve_fem;
+mod solve_heat;
 mod start;
 mod synth;
 

@@ -7,7 +7,8 @@ use clap::Args;
 
 use crate::cli::{CliError, values};
 use asperity::rubber::{
-    FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, read_rubber_data,
+    FiniteStrainRubber, FrequencyRange, Rheology, Rubber, RubberData, TemperatureDependence,
+    read_rubber_data,
 };
 
 /// The rubber.
@@ -80,6 +81,11 @@ impl MaterialOptions {
 impl Material {
     pub(super) fn rubber(&self) -> &Rubber {
         &self.data.rubber
+    }
+
+    /// How the rubber shifts with temperature, about that of its moduli.
+    pub(super) fn temperature(&self) -> Option<TemperatureDependence> {
+        self.data.temperature
     }
 
     /// Warnings: what looks like a mistake in its file, and extrapolations beyond the measurement of the rubber, which are

@@ -13,7 +13,7 @@
 //! to its own loss, and the mixed terms with it.
 
 use super::HeatError;
-use super::depth::{Depths, NODES};
+use super::depth::Depths;
 use super::material::positive;
 use super::source::{CLOSURE, finite};
 use crate::numerics::plane::Transform;

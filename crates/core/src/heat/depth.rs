@@ -172,10 +172,8 @@ fn decay(
     let known = at_start(&constant) + two * (jump - sigma * constant[last] / odd(last));
     let unknown = at_start(&homogeneous) - two * sigma * homogeneous[last] / odd(last);
     let first = (start - known) / unknown;
-    let mut u = [Complex64::ZERO; NODES];
-    for n in 0..NODES {
-        u[n] = constant[n] + homogeneous[n] * first;
-    }
+    let mut u = constant;
+    u.iter_mut().zip(&homogeneous).for_each(|(u, h)| *u += h * first);
     (u, u.iter().sum())
 }
 

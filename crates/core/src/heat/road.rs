@@ -9,7 +9,8 @@
 //! ```
 //!
 //! for the wave `k`: the road is at rest in the frame of the profile and is heated by a flux that is taken as constant
-//! over the time of sliding. The mean has `2 sqrt(D t_0 / π) / κ` of each body. This mixed boundary is solved as it
+//! over the time of sliding. Next to an edge of the contact, where the pressure is below a tenth of its weighted mean, the
+//! interface is resistive and lets less through, so that the flux does not jump as points come into contact. The mean has `2 sqrt(D t_0 / π) / κ` of each body. This mixed boundary is solved as it
 //! stands, by GMRES on the points in contact.
 
 use super::HeatError;
@@ -104,8 +105,26 @@ impl<'a> OnSet<'a> {
     }
 }
 
+/// Pressure, over the mean of the pressure with itself as weight, from which on a point conducts and shears in full.
+const EDGE: f64 = 0.1;
+
+/// How far points are in contact: 1 from a tenth of the mean pressure in contact on, in proportion to the pressure below it, zero
+/// outside. The number of points in contact jumps, this does not.
+pub(super) fn coverage(pressure: &[f64]) -> Vec<f64> {
+    let sum: f64 = pressure.iter().map(|t| t.max(0.0)).sum();
+    let squares: f64 = pressure.iter().map(|t| t.max(0.0).powi(2)).sum();
+    if sum == 0.0 {
+        return vec![0.0; pressure.len()];
+    }
+    let full = EDGE * squares / sum;
+    pressure.iter().map(|t| (t / full).clamp(0.0, 1.0)).collect()
+}
+
 /// Flux in W/m² into the road on the points of the period, for the `insulated` temperature in K of the surface of the
-/// rubber there and its rise by a unit flux.
+/// rubber there, its rise by a unit flux and the [`coverage`].
+///
+/// A point of the coverage `c` has the further resistance `R (1/c - 1)`, with `R` that of the highest wave; the unknowns are the fluxes
+/// over `sqrt(c)`.
 ///
 /// # Errors
 /// [`HeatError::Conduction`].
@@ -115,12 +134,13 @@ pub(super) fn flux(
     period: f64,
     of_rubber: &[Complex64],
     insulated: &[f64],
-    contact: &[bool],
+    coverage: &[f64],
 ) -> Result<Vec<f64>, HeatError> {
-    let points = contact.len();
+    let points = coverage.len();
     let mut flux = vec![0.0; points];
-    let set: Vec<usize> = (0..points).filter(|i| contact[*i]).collect();
-    let wanted: Vec<f64> = set.iter().map(|i| insulated[*i]).collect();
+    let set: Vec<usize> = (0..points).filter(|i| coverage[*i] > 0.0).collect();
+    let roots: Vec<f64> = set.iter().map(|i| coverage[*i].sqrt()).collect();
+    let wanted: Vec<f64> = set.iter().zip(&roots).map(|(i, c)| c * insulated[*i]).collect();
     let scale = euclidean_norm(&wanted);
     if scale == 0.0 {
         return Ok(flux);
@@ -131,23 +151,33 @@ pub(super) fn flux(
         .map(|(road, rubber)| rubber + road)
         .collect();
     let inverse: Vec<Complex64> = symbol.iter().map(|c| c.inv()).collect();
+    let edge = symbol.last().map_or(0.0, |c| c.norm());
     let mut on_set = OnSet::new(&set, points);
+    let resist = |on_set: &mut OnSet, x: &[f64], y: &mut [f64]| {
+        let scaled: Vec<f64> = x.iter().zip(&roots).map(|(x, c)| c * x).collect();
+        on_set.apply(&symbol, &scaled, y);
+        for ((y, x), c) in y.iter_mut().zip(x).zip(&roots) {
+            *y = c * *y + (1.0 - c * c) * edge * x;
+        }
+    };
     let mut solution = vec![0.0; set.len()];
     on_set.apply(&inverse, &wanted, &mut solution);
     let tolerance = 0.1 * TOLERANCE * euclidean_norm(&solution);
     let limits = KrylovLimits { tolerance, max_iterations: MOST_ITERATIONS };
     let mut image = vec![0.0; set.len()];
     let operator = |x: &[f64], y: &mut [f64]| {
-        on_set.apply(&symbol, x, &mut image);
+        resist(&mut on_set, x, &mut image);
         on_set.apply(&inverse, &image, y);
     };
     let report = gmres(operator, &mut solution, limits, &Interrupt::default());
-    on_set.apply(&symbol, &solution, &mut image);
+    resist(&mut on_set, &solution, &mut image);
     let gap: Vec<f64> = image.iter().zip(&wanted).map(|(a, b)| a - b).collect();
     let residual = euclidean_norm(&gap) / scale;
     if residual.is_nan() || residual > TOLERANCE {
         return Err(HeatError::Conduction { residual, iterations: report.iterations });
     }
-    set.iter().zip(&solution).for_each(|(i, q)| flux[*i] = *q);
+    for ((i, q), c) in set.iter().zip(&solution).zip(&roots) {
+        flux[*i] = c * q;
+    }
     Ok(flux)
 }

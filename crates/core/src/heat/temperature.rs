@@ -36,6 +36,7 @@ pub struct Temperatures {
     /// Those of each wave, the mean first, at the depths that it reaches, from the surface on.
     waves: Vec<Vec<Complex64>>,
     road_flux: Vec<f64>,
+    shear_power: f64,
 }
 
 impl Temperatures {
@@ -61,7 +62,8 @@ impl Temperatures {
         let (speed, period) = (source.speed(), source.period());
         let of_rubber = road::of_rubber(setting, speed, period, points);
         let shear = setting.shear_stress * speed.abs();
-        let made: Vec<f64> = contact.iter().map(|c| if *c { shear } else { 0.0 }).collect();
+        let coverage = road::coverage(pressure);
+        let made: Vec<f64> = coverage.iter().map(|c| shear * c).collect();
         let insulated: Vec<Complex64> = spectrum(&made)
             .iter()
             .zip(&of_rubber)
@@ -72,16 +74,18 @@ impl Temperatures {
             None => vec![0.0; points],
             Some(road) => {
                 let insulated = on_points(insulated.iter().copied(), points);
-                road::flux(road, setting.duration, period, &of_rubber, &insulated, &contact)?
+                road::flux(road, setting.duration, period, &of_rubber, &insulated, &coverage)?
             }
         };
+        let shear_power = made.iter().sum::<f64>() / points as f64;
         let taken = spectrum(&road_flux);
         let surface =
             insulated.iter().zip(&taken).zip(&of_rubber).map(|((t, q), r)| t - q * r).collect();
         let flux: Vec<Complex64> =
             spectrum(&made).iter().zip(&taken).map(|(made, taken)| made - taken).collect();
         let waves = rising.fall(&flux);
-        Ok(Self { points, contact, nodes: source.layers().nodes(), surface, waves, road_flux })
+        let nodes = source.layers().nodes();
+        Ok(Self { points, contact, nodes, surface, waves, road_flux, shear_power })
     }
 
     /// Rise in K of the surface on the points of the period.
@@ -104,9 +108,10 @@ impl Temperatures {
         self.surface[0].re
     }
 
-    /// Part of the points that is in contact.
-    pub fn contact_points(&self) -> f64 {
-        self.contact.iter().filter(|c| **c).count() as f64 / self.points as f64
+    /// Power of the shear stress in W per m² of nominal area; next to the edges of the contact, where the pressure is below a tenth
+    /// of its weighted mean, the stress goes to zero with the pressure.
+    pub fn shear_power(&self) -> f64 {
+        self.shear_power
     }
 
     /// Rise in K of the surface, its mean over the points in contact; zero without any.

@@ -199,7 +199,7 @@ impl<'a> FeedbackContact<'a> {
         HeatReport {
             power: source.power(),
             heat: source.heat(),
-            shear_power: thermal.map_or(0.0, |t| t.shear_stress * speed * field.contact_points()),
+            shear_power: field.shear_power(),
             road_flux: flux.iter().sum::<f64>() / flux.len() as f64,
             contact_mean: field.contact_mean(),
             background: field.background(),

@@ -41,7 +41,7 @@ pub struct FeedbackSetup<'a> {
 /// Tolerance of the fixed point that suits all but studies of it.
 pub const TOLERANCE: f64 = 1e-6;
 /// Most contacts solved for it.
-pub const MOST_STEPS: usize = 80;
+pub const MOST_STEPS: usize = 100;
 
 impl<'a> FeedbackSetup<'a> {
     /// A contact whose moduli nothing changes yet, with the tolerance 1e-6.

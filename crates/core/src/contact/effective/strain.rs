@@ -21,7 +21,7 @@ use rustfft::FftPlanner;
 use std::f64::consts::TAU;
 
 /// Nodes over depth; the rule integrates `y^4 e^(-2y)` to 1e-9.
-const NODES: usize = 10;
+const NODES: usize = 16;
 /// Waves from the longest on that are all computed, and per octave after them; those between are interpolated.
 const ALL: usize = 8;
 const PER_OCTAVE: f64 = 4.0;
@@ -173,10 +173,12 @@ mod tests {
             };
             pressure.iter().enumerate().map(wave).sum()
         };
+        let coefficients: Vec<Complex64> = (0..20).map(coefficient).collect();
+        let coefficient = |k: usize| coefficients[k];
         let longest = TAU / load.period;
         for m in [1_usize, 4, 8] {
             let q = m as f64 * longest;
-            let n = 4000;
+            let n = 2000;
             let step = 20.0 / q / f64::from(n);
             let mut sum = 0.0;
             for j in 0..n {

@@ -48,10 +48,12 @@ fn one_wave_heats_uniformly_at_the_depth_of_its_length_and_has_no_flash() {
         for (index, z) in source.depths().into_iter().enumerate() {
             let expected = power * 4.0 * q.powi(3) * z * z * (-2.0 * q * z).exp();
             for heat in source.at_depth(index) {
-                assert!((heat - expected).abs() < 1e-13 * most, "{z}: {heat} {expected}");
+                assert!((heat - expected).abs() < 1e-12 * most, "{z}: {heat} {expected}");
             }
         }
-        let temperatures = Temperatures::new(&source, &pressure, &setting()).unwrap();
+        // After a time in which the mean is no longer small beside what a wave of the same heat would be.
+        let setting = ThermalSetting { duration: 10.0, ..setting() };
+        let temperatures = Temperatures::new(&source, &pressure, &setting).unwrap();
         let surface = temperatures.surface();
         let mean = temperatures.background();
         assert!(mean > 0.0);
@@ -116,14 +118,18 @@ fn the_source_is_that_of_all_branches_at_every_point() {
         let coefficients = source::spectrum(&pressure);
         let amplitudes: Vec<Complex64> =
             coefficients[1..=moduli.len()].iter().map(|t| 2.0 * t).collect();
-        for (index, z) in source.depths().into_iter().enumerate().step_by(7) {
-            let found = source.at_depth(index);
-            let scale = found.iter().fold(0.0_f64, |a, q| a.max(*q));
-            for (i, found) in found.iter().enumerate() {
+        let most = |index: usize| source.at_depth(index).into_iter().fold(0.0_f64, f64::max);
+        let depths = source.depths();
+        let most_of_all = (0..depths.len()).map(most).fold(0.0_f64, f64::max);
+        for (index, z) in depths.into_iter().enumerate().step_by(7) {
+            let here = most(index);
+            for (i, found) in source.at_depth(index).into_iter().enumerate() {
                 let x = PERIOD * i as f64 / points as f64;
                 let expected = by_branches(&rubber, speed, &amplitudes, x, z);
                 let error = (found - expected).abs();
-                assert!(error < 1e-10 * scale, "{speed} {x} {z}: {found} {expected} of {scale}");
+                assert!(error < 1e-11 * most_of_all, "{speed} {x} {z}: {found} {expected}");
+                // Deep down, where little is left.
+                assert!(error < 1e-7 * here, "{speed} {x} {z}: {found} {expected}");
             }
         }
     }

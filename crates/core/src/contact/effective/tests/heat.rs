@@ -116,11 +116,13 @@ fn table_of_hot_friction_on_a_road() {
         .map(|k| Wave {
             wavelength: period / f64::from(k),
             amplitude: f64::from(k).powf(-1.3),
-            phase: 6.283 * random(),
+            phase: std::f64::consts::TAU * random(),
         })
         .collect();
-    let variance: f64 =
-        waves.iter().map(|w| 0.5 * (6.283 * w.amplitude / w.wavelength).powi(2)).sum();
+    let variance: f64 = waves
+        .iter()
+        .map(|w| 0.5 * (std::f64::consts::TAU * w.amplitude / w.wavelength).powi(2))
+        .sum();
     waves.iter_mut().for_each(|w| w.amplitude *= 0.3 / variance.sqrt());
     let heights = wave::sample(&waves, period, points);
     let (rubber, wlf) = (Rubber::table_2_1(), wlf());
