@@ -118,3 +118,44 @@ impl Viscoelastic for EffectiveRubber<'_> {
         self.rubber.require(range)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rubber::MeasuredModuli;
+    use crate::rubber::fit::SweepPoint;
+
+    #[test]
+    fn a_measured_rubber_is_asked_at_the_shifted_frequencies() {
+        let point = |decade: i32| SweepPoint {
+            angular_frequency: TAU * 10_f64.powi(decade),
+            storage_modulus: 1e6 * 1.5_f64.powi(decade),
+            loss_modulus: 3e5 * 1.5_f64.powi(decade),
+        };
+        let points: Vec<SweepPoint> = (1..7).map(point).collect();
+        let rubber = MeasuredModuli::new("measured", 0.5, &points).unwrap();
+        // Waves of 1 mm to 1 µm at 0.1 m/s: 100 Hz to 100 kHz.
+        let wavenumber: Vec<f64> = (1..=1000).map(|k| 1e3 * TAU * f64::from(k)).collect();
+        let mut factors = WaveFactors::none(wavenumber);
+        let asked = FrequencyRange { lowest_hz: 100.0, highest_hz: 1e5 };
+        let require = |factors: &WaveFactors| {
+            EffectiveRubber { rubber: &rubber, factors, speed: 0.1 }.require(asked)
+        };
+        assert!(require(&factors).is_ok());
+        factors.ln_shift.fill(-2.0);
+        assert!(require(&factors).is_ok());
+        factors.ln_shift.fill(-3.0);
+        let error = require(&factors).unwrap_err().to_string();
+        assert!(error.contains("4.979e0 Hz"), "{error}");
+        // One wave alone, the shift of which leads out of the measurement.
+        factors.ln_shift.fill(0.0);
+        factors.ln_shift[499] = -9.0;
+        let error = require(&factors).unwrap_err().to_string();
+        assert!(error.contains("6.170e0 Hz"), "{error}");
+        let modulus = EffectiveRubber { rubber: &rubber, factors: &factors, speed: 0.1 };
+        let q = 500e3 * TAU;
+        let expected = rubber.reduced_modulus(0.1 * q * (-9.0_f64).exp());
+        let found = modulus.reduced_modulus_of_wave(q, 0.1 * q);
+        assert!((found - expected).norm() < 1e-11 * expected.norm(), "{found} {expected}");
+    }
+}

@@ -129,7 +129,8 @@ fn the_source_is_that_of_all_branches_at_every_point() {
                 let error = (found - expected).abs();
                 assert!(error < 1e-11 * most_of_all, "{speed} {x} {z}: {found} {expected}");
                 // Deep down, where little is left.
-                assert!(error < 1e-7 * here, "{speed} {x} {z}: {found} {expected}");
+                let little = here < 1e-5 * most_of_all;
+                assert!(little || error < 1e-8 * here, "{speed} {x} {z}: {found} {expected}");
             }
         }
     }
