@@ -29,6 +29,7 @@ const MECHANICS: &[&str] = &[
     "surface",
     "rubber",
     "reference",
+    "heat",
     "contact",
     "interface",
     "multiscale",

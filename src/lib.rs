@@ -27,6 +27,7 @@
 //! |---|---|
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
 //! | [`rubber`] | generalised Maxwell model, its fit to measured moduli; here with its file |
+//! | [`heat`] | heat source and temperature of a sliding contact |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`interface`] | shear in the area of contact: its law, its fit, its effect on the contact |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
@@ -64,7 +65,7 @@
 //! are NaN and nothing else is.
 
 pub use asperity_core::{
-    contact, error_kind, fem, interface, multiscale, numerics, reference, surface, theory, water,
+    contact, error_kind, fem, heat, interface, multiscale, numerics, reference, surface, theory, water,
 };
 pub use asperity_files as files;
 pub use asperity_scans as scans;

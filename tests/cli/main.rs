@@ -24,6 +24,7 @@ mod rubber_tables;
 mod solve;
 mod solve_areal;
 mod solve_fem;
+mod solve_heat;
 mod start;
 mod synth;
 mod theory;

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`surface`] | line scans, roughness parameters, correlation, spectra, superposed sines, realisations |
 //! | [`rubber`] | generalised Maxwell model, temperature, finite strain, its fit to measured moduli |
+//! | [`heat`] | heat source and temperature of a sliding contact |
 //! | [`contact`] | the viscoelastic half-space: operator, active set, friction over contact area |
 //! | [`interface`] | shear in the area of contact: its law, its fit, its effect on the contact |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
@@ -25,6 +26,7 @@
 pub mod contact;
 pub mod error_kind;
 pub mod fem;
+pub mod heat;
 pub mod interface;
 pub mod multiscale;
 pub mod numerics;

@@ -8,11 +8,13 @@
 //! | `error_estimate` | the error of a single solve, as it is printed |
 //! | `fem` | sliding contact at finite deformation |
 //! | `fem_output` | what `asperity solve fem` prints and writes |
+//! | `heat` | the same as `bem`, with the heat that the contact makes |
 //! | `map_file` | a height map of an instrument or of a text file |
 //! | `material` | the rubber of a single problem |
 //! | `profile_file` | a periodic profile in a text file of two columns |
 //! | `resolution` | what `asperity solve fem` requires of a mesh, and its warnings about a coarse one |
 //! | `shape` | the profile of a single problem: superposed sines or a file |
+//! | `thermal` | thermal constants and the time of sliding |
 
 mod areal;
 mod areal_shape;
@@ -20,11 +22,13 @@ mod bem;
 mod error_estimate;
 mod fem;
 mod fem_output;
+mod heat;
 mod map_file;
 mod material;
 mod profile_file;
 mod resolution;
 mod shape;
+mod thermal;
 
 use std::path::Path;
 
@@ -39,6 +43,7 @@ pub(super) enum Solve {
     Areal(Box<areal::Areal>),
     Bem(Box<bem::Bem>),
     Fem(Box<fem::Fem>),
+    Heat(Box<heat::Heat>),
 }
 
 impl Solve {
@@ -47,6 +52,7 @@ impl Solve {
             Self::Areal(areal) => areal.run(quiet),
             Self::Bem(bem) => bem.run(quiet),
             Self::Fem(fem) => fem.run(quiet),
+            Self::Heat(heat) => heat.run(quiet),
         }
     }
 }

@@ -245,6 +245,22 @@ impl HalfSpace {
     }
 }
 
+/// Reduced moduli in Pa that the operator of a grid has for its waves `q = 2π k / period`, `k` from 1 to `(points - 1) / 2`:
+/// those of the rubber with the tapered phase of [`HalfSpace`].
+pub fn wave_moduli(
+    rubber: &dyn Viscoelastic,
+    speed: f64,
+    period: f64,
+    points: usize,
+) -> Vec<Complex64> {
+    let modulus = |k: usize| {
+        let wavenumber = TAU * k as f64 / period;
+        let relative = 2.0 * k as f64 / points as f64;
+        2.0 / (wavenumber * compliance(rubber, speed, wavenumber, relative))
+    };
+    (1..=(points - 1) / 2).map(modulus).collect()
+}
+
 /// Compliance in m/Pa of the wave with `wavenumber` in rad/m, which is the `relative` part of the
 /// highest wavenumber of the grid.
 pub(super) fn compliance(
@@ -256,7 +272,8 @@ pub(super) fn compliance(
     if wavenumber == 0.0 {
         return Complex64::ZERO;
     }
-    let untapered = 2.0 / (wavenumber * rubber.reduced_modulus(wavenumber * speed));
+    let modulus = rubber.reduced_modulus_of_wave(wavenumber, wavenumber * speed);
+    let untapered = 2.0 / (wavenumber * modulus);
     let (modulus, phase) = untapered.to_polar();
     if relative == 1.0 {
         return Complex64::new(modulus, 0.0);

@@ -19,11 +19,13 @@
 //! | [`area`] | the pressure that gives a contact area |
 //! | [`curve`] | friction over contact area, from few solves |
 //! | [`areal`] | the same for surfaces that are rough in both directions |
+//! | [`effective`] | heat and large strain: moduli of each wave that follow from the contact |
 //! | [`refine`] | grids fine enough for a given accuracy of friction |
 
 pub mod area;
 pub mod areal;
 pub mod curve;
+pub mod effective;
 pub mod half_space;
 pub mod refine;
 pub mod sliding;

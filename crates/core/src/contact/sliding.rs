@@ -200,6 +200,32 @@ impl SlidingContact {
         pressure
     }
 
+    /// As [`Self::solve`], from the pressures in Pa of a contact that is near on the same grid, such as that with slightly other
+    /// moduli: their contact set is where the iteration begins, in place of the coarser grids. The solution is the same
+    /// within [`RESIDUAL_TOLERANCE`]. Where it does not converge, it is solved from scratch.
+    ///
+    /// # Errors
+    /// As [`Self::solve`]; [`ContactError::OutOfRange`] if the number of pressures is not that of the points.
+    pub fn solve_near(
+        &mut self,
+        mean_pressure: f64,
+        pressure: &[f64],
+    ) -> Result<ContactSolution, ContactError> {
+        if pressure.len() != self.points() {
+            let (quantity, value) = ("the number of pressures", pressure.len() as f64);
+            return Err(ContactError::OutOfRange { quantity, value, range: "that of the points" });
+        }
+        let usable = mean_pressure > 0.0 && pressure.iter().any(|t| *t > 0.0);
+        if !usable || self.full_contact(mean_pressure).is_some() {
+            return self.solve(mean_pressure);
+        }
+        let solved = self.on_finest(mean_pressure, pressure.to_vec(), 0.0);
+        match solved.and_then(|(solution, outcome)| self.accept(solution, Some(outcome))) {
+            Err(ContactError::NotConverged { .. }) => self.solve(mean_pressure),
+            other => other,
+        }
+    }
+
     fn partial_contact(
         &mut self,
         mean_pressure: f64,
@@ -219,17 +245,26 @@ impl SlidingContact {
             coarser_edges.clone_from(&grid.edges);
         }
         let start = refine(&pressure, &coarser_edges, points);
+        self.on_finest(mean_pressure, start, applications)
+    }
+
+    /// The contact on the finest grid from pressures there that have cost some `applications` of the operator.
+    fn on_finest(
+        &mut self,
+        mean_pressure: f64,
+        start: Vec<f64>,
+        applications: f64,
+    ) -> Result<(ContactSolution, Outcome), ContactError> {
         let mut contact = self.finest.contact(start, mean_pressure, &self.interrupt);
         let outcome = contact.solve(Goal::Solution { tolerance: INNER_TOLERANCE });
         check_interrupt(&self.interrupt)?;
-        applications += (outcome.applications * points) as f64 / points as f64;
         let (mean_separation, pressure) = (contact.mean_separation, contact.pressure);
         let Self { finest, slopes, .. } = self;
         let Grid { space, heights, edges, .. } = finest;
         let fields = Fields { mean_pressure, mean_separation, pressure, heights, slopes, edges };
         let mut solution = fields.evaluate(space);
         solution.iterations = outcome.iterations;
-        solution.operator_applications = applications;
+        solution.operator_applications = applications + outcome.applications as f64;
         Ok((solution, outcome))
     }
 }

@@ -2,21 +2,25 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`anderson`] | fixed points of expensive functions |
 //! | [`bracket`] | the root of a growing function |
 //! | [`direct`] | sparse LU factors of blocks of two unknowns a node, by nested dissection |
 //! | [`interpolation`] | cubic Hermite interpolants |
 //! | [`interrupt`] | a flag by which a user stops a long computation |
+//! | `legendre` | functions by their values at Gauss-Legendre nodes |
 //! | [`krylov`] | GMRES for matrix-free, nonsymmetric systems |
 //! | `least_squares` | nonlinear least squares: a trust region on the Gauss-Newton model |
 //! | `plane` | Fourier transform of real fields over a plane |
 //! | [`statistics`] | means, spreads and confidence intervals of small samples, lines through points |
 
+pub mod anderson;
 pub mod bracket;
 pub mod direct;
 pub mod interpolation;
 pub mod interrupt;
 pub mod krylov;
 pub(crate) mod least_squares;
+pub(crate) mod legendre;
 pub(crate) mod plane;
 pub mod statistics;
 

@@ -75,6 +75,26 @@ impl Body<'_> {
     }
 }
 
+/// Reduced moduli in Pa that the operator of a half-space has for the waves of a grid, with the tapered phase: those with `k_x` from 0
+/// to `nx / 2`, in this order the `ny` waves along `y` of each; zero for the mean.
+pub fn wave_moduli(
+    rubber: &dyn Viscoelastic,
+    sliding: Sliding,
+    periods: [f64; 2],
+    points: [usize; 2],
+) -> Vec<Complex64> {
+    let body = Body { rubber, sliding, periods, thickness: None };
+    let modulus = |bin: usize, row: usize| {
+        if bin + row == 0 {
+            return Complex64::ZERO;
+        }
+        let k = [bin as i64, signed(row, points[1])];
+        let [qx, qy] = [0, 1].map(|a| TAU * k[a] as f64 / periods[a]);
+        2.0 / (qx.hypot(qy) * body.compliance(k, points))
+    };
+    (0..=points[0] / 2).flat_map(|bin| (0..points[1]).map(move |row| modulus(bin, row))).collect()
+}
+
 /// Surface displacement under a pressure that is steady in the frame of the surface:
 /// `w_hat(q) = 2 F(|q| h) / (|q| E_r(q · v)) t_hat(q)` for `q != 0`, `w_hat(0) = 0`.
 pub(super) struct ArealHalfSpace {

@@ -37,7 +37,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-pub use half_space::Sliding;
+pub use half_space::{Sliding, wave_moduli};
 pub use sliding::{ArealContact, ArealSetup, memory_bytes};
 pub use solution::ArealSolution;
 pub use surface::ArealSurface;
