@@ -65,7 +65,8 @@
 //! are NaN and nothing else is.
 
 pub use asperity_core::{
-    contact, error_kind, fem, heat, interface, multiscale, numerics, reference, surface, theory, water,
+    contact, error_kind, fem, heat, interface, multiscale, numerics, reference, surface, theory,
+    water,
 };
 pub use asperity_files as files;
 pub use asperity_scans as scans;

@@ -45,7 +45,6 @@ pub use result::{
 };
 pub use sweep::{FitError, FitOptions, GivenShift, ModulusKind, Sweep, SweepPoint, VerticalChoice};
 
-
 use chain::Chain;
 use model::{Datum, Prony};
 use terms::Fitted;
