@@ -150,7 +150,7 @@ pub(super) fn flux(
         .zip(of_rubber)
         .map(|(road, rubber)| rubber + road)
         .collect();
-    let inverse: Vec<Complex64> = symbol.iter().map(|c| c.inv()).collect();
+    let inverse: Vec<Complex64> = symbol.iter().map(Complex64::inv).collect();
     let edge = symbol.last().map_or(0.0, |c| c.norm());
     let mut on_set = OnSet::new(&set, points);
     let resist = |on_set: &mut OnSet, x: &[f64], y: &mut [f64]| {

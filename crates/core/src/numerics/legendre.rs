@@ -72,13 +72,6 @@ impl<const N: usize> Legendre<N> {
         }
         rule
     }
-
-    /// `P_0(ξ)` to `P_{N-1}(ξ)` anywhere.
-    pub fn polynomials_at(&self, x: f64) -> Vec<f64> {
-        let mut p = polynomials(N, x);
-        p.truncate(N);
-        p
-    }
 }
 
 #[cfg(test)]
@@ -97,7 +90,7 @@ mod tests {
             let exact = (1.5_f64.exp() - (1.5 * x).exp()) / 1.5;
             approx::assert_abs_diff_eq!(beyond, exact, epsilon = 1e-13);
         }
-        let p = rule.polynomials_at(0.37);
+        let p = polynomials(16, 0.37);
         let value: f64 = rule
             .to_coefficients
             .iter()

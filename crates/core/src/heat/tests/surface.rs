@@ -202,7 +202,7 @@ fn a_road_cools_the_contact_alone_and_an_interface_keeps_it_warm() {
     let perfect = solve(Some(Road { body, transfer: None }));
     let resistive = solve(Some(Road { body, transfer: Some(1e5) }));
     let blocked = solve(Some(Road { body, transfer: Some(1e-3) }));
-    let [t0, t1, t2, t3] = [&free, &perfect, &resistive, &blocked].map(|t| t.contact_mean());
+    let [t0, t1, t2, t3] = [&free, &perfect, &resistive, &blocked].map(Temperatures::contact_mean);
     assert!(t1 < 0.9 * t0 && t1 > 0.0 && t2 > t1 && t2 < t0, "{t0} {t1} {t2}");
     approx::assert_relative_eq!(t3, t0, max_relative = 1e-6);
     for (flux, t) in perfect.road_flux().iter().zip(&pressure) {
