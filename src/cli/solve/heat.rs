@@ -94,7 +94,7 @@ struct Summary {
 impl Heat {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
         let material = self.material.material()?;
-        let law = material.temperature().ok_or_else(|| {
+        let law = material.temperature_dependence().ok_or_else(|| {
             CliError::input("heat needs a rubber whose shift with temperature is known: give --rubber a file with a section [temperature]")
         })?;
         let shape = self.shape.build()?;

@@ -91,7 +91,7 @@ impl Material {
 
     /// How the rubber shifts from its temperature to others, if it is known.
     pub(in crate::cli) fn temperature_dependence(&self) -> Option<TemperatureDependence> {
-        self.data.temperature
+        self.data.temperature.clone()
     }
 
     /// Warnings: what looks like a mistake in its file, and extrapolations beyond the measurement of the rubber, which are

@@ -1,6 +1,6 @@
 //! The heat of the rubber, as options.
 
-use asperity::rubber::{TemperatureDependence, ZERO_CELSIUS};
+use asperity::rubber::{TemperatureDependence, Viscoelastic, ZERO_CELSIUS};
 use asperity::theory::{Heating, IsotropicPersson};
 use asperity::units::Units;
 use clap::Args;
@@ -77,7 +77,7 @@ impl FlashOptions {
             CliError::input(format!(
                 "--flash: the rubber {} has no [temperature] section, so heat does not change it; leave --flash out, or give \
                  a --rubber with one (`asperity rubber fit` writes it)",
-                material.rubber().name
+                material.rubber().name()
             ))
         })?;
         Ok(Some((law, diameter.mm_to_m())))
@@ -90,7 +90,7 @@ impl FlashOptions {
     pub(super) fn row(
         &self,
         theory: &IsotropicPersson,
-        (law, contact_diameter): (TemperatureDependence, f64),
+        (law, contact_diameter): &(TemperatureDependence, f64),
         speed_mm_s: f64,
         pressure_mpa: f64,
     ) -> Result<FlashRow, CliError> {
@@ -106,7 +106,7 @@ impl FlashOptions {
         let heating = Heating {
             conductivity: self.conductivity_w_mk,
             volumetric_heat: self.density_kg_m3 * self.specific_heat_j_kgk,
-            contact_diameter,
+            contact_diameter: *contact_diameter,
             shift: &shift,
         };
         let hot = theory.heated(speed_mm_s.mm_to_m(), pressure_mpa.mpa_to_pa(), &heating)?;

@@ -12,6 +12,7 @@ use super::surface::{Roughness, Surface, SurfaceOptions};
 use crate::cli::output::{aligned, json, note, print, refuse_existing, significant, write_file};
 use crate::cli::solve::{Material, MaterialOptions, refuse_to_overwrite};
 use crate::cli::{CliError, values};
+use asperity::rubber::Viscoelastic;
 use asperity::theory::{Diffusion, IsotropicPersson, PerssonOptions};
 
 const EXAMPLES: &str = "\
@@ -167,8 +168,8 @@ impl PerssonCommand {
         }
         let summary = Summary {
             surface: surface.roughness(),
-            rubber: material.rubber().name.clone(),
-            poisson_ratio: material.rubber().poisson_ratio,
+            rubber: material.rubber().name().into(),
+            poisson_ratio: material.rubber().poisson_ratio(),
             temperature_c: self.material.temperature_c(),
             gamma: self.gamma,
             diffusion: self.diffusion,
@@ -210,7 +211,7 @@ impl PerssonCommand {
                 let predictions =
                     theory.over_wavenumbers(speed.mm_to_m(), pressure.mpa_to_pa(), &marks)?;
                 rows.extend(predictions.iter().map(|at| Row::new(speed, pressure, at)));
-                if let Some(heat) = heat {
+                if let Some(heat) = &heat {
                     flash.push(self.flash.row(&theory, heat, speed, pressure)?);
                 }
             }

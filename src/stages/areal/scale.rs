@@ -12,7 +12,7 @@
 //! the friction of a surface of that roughness, from theory and in tables alike.
 
 use crate::contact::refine::LEAST_FRICTION;
-use crate::rubber::Rubber;
+use crate::rubber::Viscoelastic;
 use crate::surface::PeriodicMap;
 use std::f64::consts::TAU;
 
@@ -22,7 +22,7 @@ const SHARE: f64 = 0.01;
 const FREQUENCIES: usize = 33;
 
 /// Friction to which relative errors refer where friction is less, of a surface at a speed in m/s.
-pub(crate) fn least_friction(map: &PeriodicMap, rubber: &Rubber, speed: f64) -> f64 {
+pub(crate) fn least_friction(map: &PeriodicMap, rubber: &dyn Viscoelastic, speed: f64) -> f64 {
     let longest = map.periods[0].max(map.periods[1]);
     let (low, high) = ((TAU / longest * speed).ln(), (TAU / map.shortest * speed).ln());
     let loss = |k: usize| {
