@@ -100,6 +100,7 @@ mod tests {
             friction_coefficient,
             interpolation_error: 0.0,
             discretisation_error: Some(error),
+            relative_area_error: None,
         }
     }
 

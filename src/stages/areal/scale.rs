@@ -37,6 +37,7 @@ pub(crate) fn least_friction(map: &PeriodicMap, rubber: &dyn Viscoelastic, speed
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rubber::Rubber;
 
     #[test]
     fn the_least_friction_follows_gradient_and_loss() {

@@ -304,7 +304,7 @@ mod tests {
     use super::*;
     use crate::fem::error::PathEnd;
     use crate::numerics::Interrupt;
-    use crate::rubber::Rheology;
+    use crate::rubber::{Rheology, Rubber};
     use crate::surface::Wave;
 
     fn solved(pressure_mpa: f64, friction_coefficient: f64, area: f64) -> FemSolveRow {
@@ -374,17 +374,17 @@ mod tests {
         let surface = Surface { kind: SurfaceKind::sines(1), realisation: 1, profile: vec![wave] };
         let (interrupted, parameters) = (Interrupt::default(), Fem::default());
         let watch = Watch { progress: &|_, _| {}, interrupted: &interrupted };
-        let plain = Rubber::table_2_1();
         let finite_strain = Rheology::ArrudaBoyce { locking_stretch: 1.5 };
-        let named = Rubber { finite_strain, ..plain.clone() };
-        let friction = |rubber: &Rubber| {
+        let named = Rubber { finite_strain, ..Rubber::table_2_1() };
+        let [plain, named] = [Rubber::table_2_1(), named].map(RubberModel::from);
+        let friction = |rubber: &RubberModel| {
             let mut solver =
                 Solver::new(16, &parameters, rubber, &surface, 10.0, &store, watch).unwrap();
             solver.point(5e5).unwrap().friction_coefficient
         };
         let [a, b] = [&plain, &named].map(friction);
         assert!((a / b - 1.0).abs() > 1e-3, "{a} {b}");
-        let key = |rubber: &Rubber| problem(rubber, &surface, 10.0, 16);
+        let key = |rubber: &RubberModel| problem(rubber, &surface, 10.0, 16);
         assert!(key(&plain).get("finite_strain").is_none());
         assert_eq!(key(&named)["finite_strain"], json!(finite_strain));
         // The half-space asks for no law.

@@ -57,7 +57,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     let (realise, maps) = (chain.realise, chain.has_maps());
     let mut parameters = json!(realise);
     let alone = maps && !chain.has_lines();
-    let limit = alone.then(|| MapLimit {
+    let limit = alone.then_some(MapLimit {
         shortest_wavelength_mm: chain.approximate.shortest_wavelength_mm,
         undetermined: chain.approximate.undetermined,
     });

@@ -91,8 +91,11 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         }),
         fem: chain.fem.is_some(),
         multilevel: chain.multilevel.is_some(),
-        scans: chain.ingest.is_some(),
-        lines: chain.has_lines(),
+        scans: match (chain.ingest, chain.has_lines()) {
+            (None, _) => Scans::None,
+            (Some(_), true) => Scans::Lines,
+            (Some(_), false) => Scans::MapsAlone,
+        },
         angle_deg: chain.areal.angles_deg.first().copied().filter(|_| chain.has_areal_surfaces()),
         layer_mm: chain.areal.thickness_mm,
         lines_deg: match chain.ingest.and_then(|ingest| ingest.map_lines) {
@@ -178,10 +181,8 @@ pub struct Models {
     pub fem: bool,
     /// The recipe has a section `[multilevel]`.
     pub multilevel: bool,
-    /// The recipe has scans.
-    pub scans: bool,
-    /// Line scans are taken of them.
-    pub lines: bool,
+    /// What the recipe has measured of the road.
+    pub scans: Scans,
     /// The first direction of sliding over areal surfaces, if there are any.
     pub angle_deg: Option<f64>,
     /// Thickness in mm of the layer that slides over them; a half-space if there is none.
@@ -207,15 +208,26 @@ impl Models {
         ))
     }
 
-    /// Maps stand alone: nothing was fitted to lines.
+    /// Nothing was fitted to lines.
     fn maps_alone(self) -> bool {
-        self.scans && !self.lines
+        self.scans == Scans::MapsAlone
     }
 
     /// Above this root mean square slope waves are corrected.
     fn threshold(self) -> Option<f64> {
         self.hybrid.map(|corrected| corrected.rms_slope_threshold)
     }
+}
+
+/// What a recipe has measured of the road.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scans {
+    /// Nothing: it states the waves.
+    None,
+    /// Line scans, with or without maps.
+    Lines,
+    /// Maps, of which no lines are taken.
+    MapsAlone,
 }
 
 /// How the half-space is corrected by its steepest waves.
@@ -246,7 +258,7 @@ pub fn run(
     let half_space = run.rows(CURVES)?;
     let surfaces = read_surfaces(run)?;
     let areal = if models.angle_deg.is_some() { run.rows(AREAL_SURFACES)? } else { Vec::new() };
-    let basis = Basis::read(run, &surfaces, &areal, models.scans)?;
+    let basis = Basis::read(run, &surfaces, &areal, models.scans != Scans::None)?;
     let bem: Vec<FrictionAt> = half_space.iter().map(FrictionAt::from).collect();
     let mut values = solved(models, &bem, &areal, run)?;
     let mut rows: Vec<FrictionRow> =

@@ -34,7 +34,7 @@ fn of_table(table: &MeasuredModuli) -> Vec<String> {
     let storage = || table.points().iter().map(|point| point.storage_modulus);
     let (softest, stiffest) =
         (storage().fold(f64::INFINITY, f64::min), storage().fold(0.0, f64::max));
-    if stiffest > STIFFEST || stiffest < SOFTEST {
+    if !(SOFTEST..=STIFFEST).contains(&stiffest) {
         oddities.push(format!(
             "rubber {name}: the storage modulus of its table lies between {:e} and {:e} MPa, and that of rubber between \
              0.1 MPa and some 3 GPa: check the unit",

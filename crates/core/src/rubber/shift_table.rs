@@ -37,7 +37,7 @@ impl ShiftTable {
             if !(temperature_c > -ZERO_CELSIUS && temperature_c.is_finite()) {
                 return Err(TemperatureError::NoTemperature { temperature_c });
             }
-            if !(log10_shift.abs() <= MOST_DECADES) {
+            if !(-MOST_DECADES..=MOST_DECADES).contains(&log10_shift) {
                 return Err(TemperatureError::BadFactor { temperature_c, log10_shift });
             }
         }

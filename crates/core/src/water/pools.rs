@@ -314,10 +314,11 @@ mod tests {
     #[test]
     fn a_line_of_points_and_a_flat_map_have_no_pools() {
         assert_eq!(fill_pools(&[1.0], [1, 1]).filled_fraction, 0.0);
-        let flat = fill_pools(&vec![2.0; 12], [4, 3]);
+        let flat = fill_pools(&[2.0; 12], [4, 3]);
         assert_eq!((flat.filled_fraction, flat.outlet), (0.0, 2.0));
         // Ridges along y: every valley leads out along y.
-        let ridges: Vec<f64> = (0..64 * 8).map(|k| (TAU * (k % 64) as f64 / 16.0).sin()).collect();
+        let ridges: Vec<f64> =
+            (0..64 * 8).map(|k| (TAU * f64::from(k % 64) / 16.0).sin()).collect();
         assert_eq!(fill_pools(&ridges, [64, 8]).filled_fraction, 0.0);
     }
 }

@@ -78,6 +78,7 @@ mod tests {
             equilibrium_modulus: spring,
             branches: vec![MaxwellBranch { modulus: branch, relaxation_time: time }],
             poisson_ratio: 0.0,
+            finite_strain: Default::default(),
         };
         for decade in -8..=12 {
             let x = 10_f64.powi(decade);

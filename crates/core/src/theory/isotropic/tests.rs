@@ -23,6 +23,7 @@ fn rubber() -> Rubber {
             MaxwellBranch { modulus: 2e8, relaxation_time: 1e-5 },
         ],
         poisson_ratio: 0.49,
+        finite_strain: Default::default(),
     }
 }
 
@@ -79,6 +80,7 @@ fn at_large_pressure_it_is_full_contact() {
         equilibrium_modulus: 4e6,
         branches: vec![MaxwellBranch { modulus: branch, relaxation_time: time }],
         poisson_ratio: 0.5,
+        finite_strain: Default::default(),
     };
     let band = [1e3, 1e5];
     let surface = self_affine(scale, 0.5, band);
@@ -180,6 +182,7 @@ fn the_plane_has_the_gamma_ratio_of_the_friction_of_its_line() {
         equilibrium_modulus: 4e6,
         branches: vec![MaxwellBranch { modulus: 2e8, relaxation_time: time }],
         poisson_ratio: 0.5,
+        finite_strain: Default::default(),
     };
     let closed = |hurst: f64| gamma(hurst) * gamma(hurst + 1.0) / gamma(hurst + 0.5).powi(2);
     for (hurst, expected) in [(0.5, FRAC_PI_2), (0.65, 1.431_8), (0.8, 1.346_3), (1.0, 4.0 / PI)] {
