@@ -35,7 +35,7 @@ pub struct ArealLoad<'a> {
     /// Pressure in Pa, row by row: that of the point `(i, j)` is `pressure[j * nx + i]`.
     pub pressure: &'a [f64],
     /// Reduced moduli in Pa of the waves with `k_x` from 0 to `nx / 2`, in this order the `ny` waves along `y` of each; what stands for
-    /// the mean and for the highest waves of an even grid is not used. See [`crate::contact::areal::wave_moduli`].
+    /// the mean and for the highest waves of an even grid is not used. See `contact::areal::wave_moduli`.
     pub moduli: &'a [Complex64],
 }
 

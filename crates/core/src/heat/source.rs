@@ -49,7 +49,7 @@ pub struct LineLoad<'a> {
     /// Pressure in Pa on equidistant points of the period.
     pub pressure: &'a [f64],
     /// Reduced moduli `E_r(q v) = E / (1 - nu²)` in Pa of the waves `q = 2π k / L` for `k` from 1 to `(points - 1) / 2`: all but the
-    /// highest of an even grid, which has no direction. See [`crate::contact::half_space::wave_moduli`].
+    /// highest of an even grid, which has no direction. See `contact::half_space::wave_moduli`.
     pub moduli: &'a [Complex64],
 }
 

@@ -185,6 +185,32 @@ mod tests {
         approx::assert_relative_eq!(within - outside, expected, max_relative = 2e-3);
     }
 
+    /// The table of `docs/total_friction.md`: five waves of Table 3.1 at 0.3 MPa under 5 MPa of shear.
+    #[test]
+    #[ignore = "prints a table; .ci/full"]
+    fn what_the_sum_leaves_out() {
+        use crate::surface::TABLE_3_1_MM;
+        let phases = [0.3, 2.0, 4.4, 1.1, 5.2];
+        let waves: Vec<Wave> = TABLE_3_1_MM[..5]
+            .iter()
+            .zip(phases)
+            .map(|((length, amplitude), phase)| Wave {
+                wavelength: 1e-3 * length,
+                amplitude: 0.4e-3 * amplitude,
+                phase,
+            })
+            .collect();
+        let profile = wave::sample(&waves, 1e-3, 4096);
+        for speed in [1e-3, 1e-2, 1e-1, 1.0] {
+            let with =
+                shear_coupling(&Rubber::table_2_1(), speed, 1e-3, &profile, 3e5, 5e6).unwrap();
+            let sum = with.hysteretic_alone + 5e6 * with.contact_area_fraction_alone / 3e5;
+            let total = with.hysteretic + with.adhesive;
+            println!("{speed:e} m/s: sum {sum:.5}, coupled {total:.5}, {with:?}");
+            assert!((total / sum - 1.0).abs() < 0.05, "{with:?}");
+        }
+    }
+
     #[test]
     fn the_effect_grows_with_the_shear_and_is_that_of_one_percent() {
         let rubber = Rubber::table_2_1();

@@ -39,7 +39,7 @@ pub trait Viscoelastic {
 
     /// Reduced modulus in Pa that a wave of the `wavenumber` in rad/m meets at the frequency ω in rad/s. It is
     /// [`Self::reduced_modulus`] in a rubber that is the same everywhere; one that is warmer or softer where its short waves
-    /// work ([`crate::contact::effective::EffectiveRubber`]) has a modulus of its own for each wave. The half-spaces ask this.
+    /// work (`contact::effective::EffectiveRubber`) has a modulus of its own for each wave. The half-spaces ask this.
     fn reduced_modulus_of_wave(&self, wavenumber: f64, angular_frequency: f64) -> Complex64 {
         let _ = wavenumber;
         self.reduced_modulus(angular_frequency)

@@ -11,6 +11,8 @@ use std::f64::consts::TAU;
 
 /// Times that a temperature or a strain beyond the law is halved, on the way to the fixed point.
 const MOST_HALVINGS: i32 = 40;
+/// Change of moduli and of friction or area below which the last contact is near the next one.
+const NEAR: f64 = 0.1;
 /// Times that a step to moduli at unknown frequencies is halved.
 const MOST_RETREATS: usize = 6;
 
@@ -107,8 +109,10 @@ impl<'a> FeedbackContact<'a> {
                 return Err(self.not_converged(mean_pressure, steps, change, step.refusal));
             }
             let next = anderson.next(&self.packed(&factors), &self.packed(&step.wanted));
+            let near = change.iter().all(|c| *c < NEAR);
+            let next = self.unpacked(&next);
             let (solution, used) =
-                self.contact(mean_pressure, &step.solution, &factors, self.unpacked(&next))?;
+                self.contact(mean_pressure, &step.solution, &factors, next, near)?;
             let relative =
                 |new: f64, old: f64| (new - old).abs() / old.abs().max(f64::MIN_POSITIVE);
             let (new, old) = (&solution, &step.solution);
@@ -135,6 +139,7 @@ impl<'a> FeedbackContact<'a> {
         last: &ContactSolution,
         factors: &WaveFactors,
         mut next: WaveFactors,
+        near: bool,
     ) -> Result<(ContactSolution, WaveFactors), EffectiveError> {
         let setup = &self.setup;
         for retreat in 0.. {
@@ -142,7 +147,11 @@ impl<'a> FeedbackContact<'a> {
                 EffectiveRubber { rubber: setup.rubber, factors: &next, speed: setup.speed };
             match SlidingContact::new(&rubber, setup.speed, setup.period, setup.heights) {
                 Ok(mut contact) => {
-                    let solution = contact.solve_near(mean_pressure, &last.pressure)?;
+                    // From a contact that is not near, the coarser grids are faster.
+                    let solution = match near {
+                        true => contact.solve_near(mean_pressure, &last.pressure)?,
+                        false => contact.solve(mean_pressure)?,
+                    };
                     return Ok((solution, next));
                 }
                 Err(ContactError::Rubber(RubberError::NotMeasured { .. }))
