@@ -25,6 +25,7 @@ mod solve;
 mod solve_areal;
 mod solve_fem;
 mod solve_heat;
+mod solve_soft;
 mod start;
 mod synth;
 mod theory;

@@ -12,6 +12,7 @@ use super::shape::{Shape, ShapeOptions};
 use super::thermal::ThermalOptions;
 use crate::cli::output::{aligned, json, note, print, significant};
 use crate::cli::{CliError, values};
+use asperity::contact::ContactSolution;
 use asperity::contact::effective::{Feedback, FeedbackContact, FeedbackSetup, HeatFeedback};
 use asperity::contact::refine::{HALF_SPACE, OnGrid, Refined, on_grid};
 use asperity::contact::sliding::POINTS_RANGE;
@@ -58,10 +59,20 @@ pub(in crate::cli) struct Heat {
 
 /// Friction and contact area.
 #[derive(Debug, Serialize)]
-struct Side {
-    friction_coefficient: f64,
-    contact_area_fraction: f64,
-    error_estimate: Option<ErrorEstimate>,
+pub(super) struct Side {
+    pub friction_coefficient: f64,
+    pub contact_area_fraction: f64,
+    pub error_estimate: Option<ErrorEstimate>,
+}
+
+impl Side {
+    pub fn new(solution: &ContactSolution, error_estimate: Option<ErrorEstimate>) -> Self {
+        Self {
+            friction_coefficient: solution.friction_coefficient,
+            contact_area_fraction: solution.contact_area_fraction,
+            error_estimate,
+        }
+    }
 }
 
 /// What is printed; the names are the keys of the JSON object. Temperatures are rises over that before sliding.
@@ -161,15 +172,10 @@ impl Heat {
     ) -> Summary {
         let found = &refined.solution;
         let heat = found.heat.as_ref().expect("heat is part of the set-up");
-        let side = |solution: &asperity::contact::ContactSolution, error| Side {
-            friction_coefficient: solution.friction_coefficient,
-            contact_area_fraction: solution.contact_area_fraction,
-            error_estimate: error,
-        };
         let per_period = |k: usize| shape.period.m_to_mm() / (k + 1) as f64;
         Summary {
-            cold: side(&found.without, None),
-            hot: side(&found.with, refined.error.map(ErrorEstimate::of_grid)),
+            cold: Side::new(&found.without, None),
+            hot: Side::new(&found.with, refined.error.map(ErrorEstimate::of_grid)),
             temperature_c: law.reference_c,
             contact_rise_k: heat.contact_mean,
             background_rise_k: heat.background,
@@ -222,7 +228,7 @@ impl Summary {
     }
 }
 
-fn view(found: &Feedback) -> OnGrid {
+pub(super) fn view(found: &Feedback) -> OnGrid {
     OnGrid {
         points: found.with.pressure.len(),
         friction_coefficient: found.with.friction_coefficient,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::{CliError, values};
+use asperity::rubber::payne::PayneLaw;
 use asperity::rubber::{
     FiniteStrainRubber, FrequencyRange, Rubber, RubberData, RubberModel, TemperatureDependence,
     read_rubber_data,
@@ -92,6 +93,11 @@ impl Material {
     /// How the rubber shifts from its temperature to others, if it is known.
     pub(in crate::cli) fn temperature_dependence(&self) -> Option<TemperatureDependence> {
         self.data.temperature.clone()
+    }
+
+    /// How the rubber softens with strain at its temperature, if its file has it.
+    pub(super) fn payne_law(&self) -> Option<PayneLaw> {
+        self.data.payne_law()
     }
 
     /// Warnings: what looks like a mistake in its file, and extrapolations beyond the measurement of the rubber, which are

@@ -14,6 +14,7 @@
 //! | `profile_file` | a periodic profile in a text file of two columns |
 //! | `resolution` | what `asperity solve fem` requires of a mesh, and its warnings about a coarse one |
 //! | `shape` | the profile of a single problem: superposed sines or a file |
+//! | `soft` | the same as `bem`, with the softening of the rubber by its strain |
 //! | `thermal` | thermal constants and the time of sliding |
 
 mod areal;
@@ -28,6 +29,7 @@ mod material;
 mod profile_file;
 mod resolution;
 mod shape;
+mod soft;
 mod thermal;
 
 use std::path::Path;
@@ -44,6 +46,7 @@ pub(super) enum Solve {
     Bem(Box<bem::Bem>),
     Fem(Box<fem::Fem>),
     Heat(Box<heat::Heat>),
+    Soft(Box<soft::Soft>),
 }
 
 impl Solve {
@@ -53,6 +56,7 @@ impl Solve {
             Self::Bem(bem) => bem.run(quiet),
             Self::Fem(fem) => fem.run(quiet),
             Self::Heat(heat) => heat.run(quiet),
+            Self::Soft(soft) => soft.run(quiet),
         }
     }
 }

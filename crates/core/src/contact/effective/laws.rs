@@ -1,6 +1,7 @@
 //! What a caller knows of the rubber beyond its moduli at rest temperature and small strain.
 
 use crate::rubber::TemperatureDependence;
+use crate::rubber::payne::{PayneLaw, elongation_of_tensor_shear};
 
 /// How moduli depend on temperature: `E(ω, T) = b_T E(a_T ω)`, about any reference.
 ///
@@ -55,4 +56,15 @@ pub trait StrainLaw {
     /// # Errors
     /// Says why the law has no value there.
     fn loss_factor(&self, strain: f64) -> Result<f64, String>;
+}
+
+/// Factors of strain sweeps, at the elongation with the elastic energy of the shear.
+impl StrainLaw for PayneLaw {
+    fn storage_factor(&self, strain: f64) -> Result<f64, String> {
+        Ok(Self::storage_factor(self, elongation_of_tensor_shear(strain)))
+    }
+
+    fn loss_factor(&self, strain: f64) -> Result<f64, String> {
+        Ok(Self::loss_factor(self, elongation_of_tensor_shear(strain)))
+    }
 }
