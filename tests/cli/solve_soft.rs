@@ -3,8 +3,7 @@
 use super::asperity_at;
 use serde_json::Value;
 
-const CONTACT: &str =
-    "solve soft --wave 0.25:0.012 --wave 1:0.02:1 --pressure 0.3 --speed 10 --points 256 --rubber {}";
+const CONTACT: &str = "solve soft --wave 0.25:0.012 --wave 1:0.02:1 --pressure 0.3 --speed 10 --points 256 --rubber {}";
 
 /// A generic rubber with two laws of softening in place of its own.
 fn rubber(folder: &tempfile::TempDir, section: &str) -> std::path::PathBuf {
@@ -38,7 +37,9 @@ fn a_rubber_that_softens_has_more_area_and_one_that_does_not_has_the_same() {
     let largest = soft["largest_strain"].as_f64().unwrap();
     assert_eq!(largest, strain.iter().copied().fold(0.0, f64::max));
 
-    let stiff = SOFTENING.replace("0.8, 0.5, 0.3", "1.0, 1.0, 1.0").replace("1.1, 0.7, 0.4", "1.0, 1.0, 1.0");
+    let stiff = SOFTENING
+        .replace("0.8, 0.5, 0.3", "1.0, 1.0, 1.0")
+        .replace("1.1, 0.7, 0.4", "1.0, 1.0, 1.0");
     let same = asperity_at(&arguments, &rubber(&folder, &stiff)).json();
     for key in ["friction_coefficient", "contact_area_fraction"] {
         assert_eq!(of(&same, "softened", key), of(&same, "small_strain", key));
@@ -53,10 +54,17 @@ fn a_rubber_that_softens_has_more_area_and_one_that_does_not_has_the_same() {
 fn a_rubber_without_strain_sweeps_is_refused_and_a_strain_beyond_them_told() {
     let folder = tempfile::tempdir().unwrap();
     let error = asperity_at(CONTACT, &rubber(&folder, "")).error(2);
-    assert!(error.contains("section [payne]") && error.contains("asperity rubber payne"), "{error}");
+    assert!(
+        error.contains("section [payne]") && error.contains("asperity rubber payne"),
+        "{error}"
+    );
     let short = SOFTENING.replace("0.001, 0.01, 0.1, 1.0", "0.0001, 0.001, 0.002, 0.003");
     let outcome = asperity_at(CONTACT, &rubber(&folder, &short));
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
-    assert!(outcome.stderr.contains("warning") && outcome.stderr.contains("0.3"), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("warning") && outcome.stderr.contains("0.3"),
+        "{}",
+        outcome.stderr
+    );
     assert!(outcome.stdout.contains("friction, softened"));
 }
