@@ -2,6 +2,7 @@
 
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::files;
+use crate::units::Units;
 use std::path::{Path, PathBuf};
 
 /// One measurement.
@@ -167,8 +168,8 @@ fn point(columns: &[Option<Quantity>], cells: &[String]) -> Result<MeasuredPoint
         }
         match quantity {
             Quantity::SpeedMm => point.speed_mm_s = value,
-            Quantity::SpeedM => point.speed_mm_s = 1e3 * value,
-            Quantity::LogSpeedM => point.speed_mm_s = 10.0_f64.powf(3.0 + value),
+            Quantity::SpeedM => point.speed_mm_s = value.m_to_mm(),
+            Quantity::LogSpeedM => point.speed_mm_s = 10.0_f64.powf(value).m_to_mm(),
             Quantity::Friction => point.friction = value,
             Quantity::Temperature => point.temperature_c = Some(value),
             Quantity::Pressure => point.pressure_mpa = Some(value),

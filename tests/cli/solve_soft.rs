@@ -31,7 +31,7 @@ fn a_rubber_that_softens_has_more_area_and_one_that_does_not_has_the_same() {
     };
     let (strain, storage) = (list("wave_strain"), list("wave_storage_factor"));
     assert_eq!(strain.len(), storage.len());
-    assert!(strain.windows(2).all(|pair| pair[1] >= pair[0]), "waves up to q: strain grows");
+    assert!(strain.iter().all(|strain| *strain > 0.0), "{strain:?}");
     assert!(storage.iter().all(|f| (0.3..=1.0).contains(f)), "{storage:?}");
     // The last step may have changed factors by the tolerance.
     let largest = soft["largest_strain"].as_f64().unwrap();
@@ -62,7 +62,7 @@ fn a_rubber_without_strain_sweeps_is_refused_and_a_strain_beyond_them_told() {
     let outcome = asperity_at(CONTACT, &rubber(&folder, &short));
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
     assert!(
-        outcome.stderr.contains("warning") && outcome.stderr.contains("0.3"),
+        outcome.stderr.contains("warning") && outcome.stderr.contains("up to 0.003"),
         "{}",
         outcome.stderr
     );
