@@ -5,6 +5,9 @@ use crate::files;
 use crate::units::Units;
 use std::path::{Path, PathBuf};
 
+/// Friction coefficients that a measurement may have.
+const FRICTIONS: std::ops::RangeInclusive<f64> = 0.0..=20.0;
+
 /// One measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPoint {
@@ -130,6 +133,17 @@ fn columns(header: &[String]) -> Result<Vec<Option<Quantity>>, String> {
         found.map(|(_, quantity)| *quantity)
     };
     let columns: Vec<Option<Quantity>> = header.iter().map(quantity).collect();
+    // A temperature or pressure that is not understood must not be taken for one that was not measured.
+    let meant = |name: &&String| {
+        let name = name.to_ascii_lowercase();
+        quantity(&name).is_none() && (name.contains("temp") || name.contains("press"))
+    };
+    if let Some(name) = header.iter().find(meant) {
+        return Err(format!(
+            "the column `{name}` is not understood: temperatures stand in temperature_c (°C), pressures in pressure_mpa (MPa); \
+             rename it, or give it another name if it is not to be read"
+        ));
+    }
     let has = |of: &[Quantity]| columns.iter().flatten().filter(|q| of.contains(q)).count();
     let speeds = has(&[Quantity::SpeedMm, Quantity::SpeedM, Quantity::LogSpeedM]);
     for (count, what) in [(speeds, "speed"), (has(&[Quantity::Friction]), "friction")] {
@@ -178,8 +192,16 @@ fn point(columns: &[Option<Quantity>], cells: &[String]) -> Result<MeasuredPoint
     if !(point.speed_mm_s > 0.0 && point.speed_mm_s.is_finite()) {
         return Err(format!("the speed {} mm/s is not positive", point.speed_mm_s));
     }
-    if point.pressure_mpa.is_some_and(|pressure| pressure <= 0.0) {
-        return Err("the pressure is not positive".into());
+    if let Some(pressure) = point.pressure_mpa.filter(|pressure| *pressure <= 0.0) {
+        return Err(format!("the pressure {pressure} MPa is not positive"));
+    }
+    if !FRICTIONS.contains(&point.friction) {
+        return Err(format!(
+            "the friction coefficient {} is not between {} and {}: give force over load, not percent; are columns swapped?",
+            point.friction,
+            FRICTIONS.start(),
+            FRICTIONS.end()
+        ));
     }
     Ok(point)
 }
@@ -210,6 +232,8 @@ mod tests {
             (Some(3), "`x` is not a number".into())
         );
         assert!(error("speed_mm_s,friction\n1,nan\n").1.contains("`nan` is not a finite"));
+        assert!(error("speed_mm_s,friction\n1,85\n").1.contains("not percent"));
+        assert!(error("speed_mm_s,friction,temperature_k\n1,1,300\n").1.contains("temperature_k"));
         assert!(error("speed_mm_s,friction\n1\n").1.contains("1 cells"));
         assert!(error("speed_mm_s,friction\n-1,2\n").1.contains("not positive"));
         assert!(error("speed_mm_s,friction\n").1.contains("no measurement"));

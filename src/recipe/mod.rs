@@ -330,7 +330,9 @@ impl Chain<'_> {
         self.fem.map_or(Ok(()), Fem::check)?;
         self.multilevel.map_or(Ok(()), Multilevel::check)?;
         self.tables.check()?;
-        self.adhesion.map_or(Ok(()), |adhesion| adhesion.check(self.bem.temperature_c))?;
+        self.adhesion.map_or(Ok(()), |adhesion| {
+            adhesion.check(self.bem.temperature_c, &self.bem.speeds_mm_s)
+        })?;
         let limit = self.realise.most_realisations.unwrap_or(0);
         require(
             limit == 0 || self.bem.average_tolerance.is_some(),

@@ -4,6 +4,7 @@ mod summary;
 
 use super::last_run::LastRun;
 use super::output::{json, note, print, refuse_existing, write_file};
+use super::solve::refuse_to_overwrite;
 use super::{CliError, run_folder, values};
 use asperity::interface::{FittedShear, Fixed, MeasuredFriction, fit_shear};
 use asperity::measurement::{Choice, Computed, MeasuredFile, read_measured};
@@ -13,7 +14,7 @@ use asperity::stages::realise::{Method, SurfaceKind};
 use asperity::stages::tables::Model;
 use asperity::units::Units;
 use clap::{Args, Subcommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use summary::{Summary, section};
 
 const EXAMPLES: &str = "\
@@ -104,6 +105,8 @@ struct Temperatures {
 impl Fit {
     fn run(&self, quiet: bool) -> Result<(), CliError> {
         refuse_existing(self.to.as_deref(), self.force)?;
+        refuse_to_overwrite(self.to.as_deref(), "--to", &[Some(&self.measured)])?;
+        self.refuse_inside_the_run()?;
         let file = read_measured(&self.measured)?;
         let view = run_folder::view_of_case(&self.run)?;
         let last_run = LastRun::read(&self.run, quiet);
@@ -127,12 +130,27 @@ impl Fit {
         for warning in warnings(&fit, &measured) {
             note(quiet, format_args!("warning: {warning}"));
         }
-        let text = section(&fit, &computed, &self.measured);
+        let text = section(&fit, &computed, &self.measured, &measured);
         if let Some(path) = &self.to {
             write_file(path, self.force, |out| out.write_all(text.as_bytes()))?;
         }
         let summary = Summary::new(&fit, &computed, &measured);
         print(&if self.json { json(&summary)? } else { summary.table() })
+    }
+
+    /// Nothing is written among the results that are read.
+    fn refuse_inside_the_run(&self) -> Result<(), CliError> {
+        let Some(folder) = self.to.as_deref().map(|to| to.parent().unwrap_or(Path::new(""))) else {
+            return Ok(());
+        };
+        let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        match (here.canonicalize(), self.run.canonicalize()) {
+            (Ok(here), Ok(run)) if here.starts_with(&run) => Err(CliError::input(format!(
+                "--to would write into the run folder {}: choose another place",
+                self.run.display()
+            ))),
+            _ => Ok(()),
+        }
     }
 
     fn choice(&self) -> Result<Choice, CliError> {
@@ -174,6 +192,13 @@ impl Fit {
         file: &MeasuredFile,
         recipe: Option<&Recipe>,
     ) -> Result<Temperatures, CliError> {
+        let stated = file.points.iter().any(|point| point.temperature_c.is_some());
+        if let Some(celsius) = self.temperature_c.filter(|_| stated) {
+            return Err(CliError::input(format!(
+                "--temperature-c {celsius} beside the column temperature_c of {}: leave one of them out",
+                self.measured.display()
+            )));
+        }
         let bem = recipe.and_then(|recipe| recipe.bem.as_ref());
         let run_c = bem.and_then(|bem| bem.temperature_c);
         let own = |point: &asperity::measurement::MeasuredPoint| {

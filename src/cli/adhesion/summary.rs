@@ -123,20 +123,26 @@ impl Summary {
 }
 
 /// The section `[adhesion]` of a recipe.
-pub(super) fn section(fit: &FittedShear, computed: &Computed, measured: &Path) -> String {
+pub(super) fn section(
+    fit: &FittedShear,
+    computed: &Computed,
+    file: &Path,
+    measured: &[MeasuredFriction],
+) -> String {
     let law = &fit.law;
     let mut lines = vec![
         "# The contact area of these tables belongs to their shortest wavelength, and so does the stress.".into(),
         format!(
             "# Fitted to {}: {}, {}, {} MPa, rms misfit {:.4}.",
             asperity::text::visible_line(&asperity::files::name::text(
-                measured.file_name().unwrap_or(measured.as_os_str())
+                file.file_name().unwrap_or(file.as_os_str())
             )),
             computed.model,
             computed.kind,
             significant(computed.pressure_mpa),
             fit.rms
         ),
+        temperature(fit, measured),
         "[adhesion]".into(),
         "law = \"gaussian\"".into(),
         format!("shear_mpa = {:?}", law.peak_stress.pa_to_mpa()),
@@ -147,6 +153,22 @@ pub(super) fn section(fit: &FittedShear, computed: &Computed, measured: &Path) -
         lines.push(format!("activation_ev = {:?}", shift.energy_ev));
         lines.push(format!("reference_c = {:?}", shift.reference_c));
     }
-    lines.push(format!("shortest_wavelength_mm = {:?}", computed.shortest_wavelength_mm));
+    // Windows have waves that are fractions of their length; six digits tell them apart.
+    lines
+        .push(format!("shortest_wavelength_mm = {}", significant(computed.shortest_wavelength_mm)));
     lines.join("\n") + "\n"
+}
+
+/// At which temperatures the law was fitted, and whether it knows others.
+fn temperature(fit: &FittedShear, measured: &[MeasuredFriction]) -> String {
+    let celsius = || measured.iter().map(|m| m.temperature_c);
+    let (low, high) =
+        (celsius().fold(f64::INFINITY, f64::min), celsius().fold(-f64::INFINITY, f64::max));
+    let range = if low == high { format!("{low} °C") } else { format!("{low} to {high} °C") };
+    match fit.law.shift {
+        Some(_) => format!("# Measured at {range}."),
+        None => format!(
+            "# Measured at {range}; without activation_ev the law is that of this temperature at all others."
+        ),
+    }
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::output::{json, note, print, refuse_existing, significant, write_file};
+use crate::cli::solve::refuse_to_overwrite;
 use asperity::rubber::fit::{StrainUnit, TableOptions, read_strain_sweeps};
 use asperity::rubber::payne::{
     Kraus, KrausFit, Payne, PayneCurve, PayneTable, StrainSweep, TableFit, elongation_of_shear,
@@ -101,6 +102,7 @@ struct Row {
 impl PayneFit {
     pub(in crate::cli) fn run(&self, quiet: bool) -> Result<(), CliError> {
         refuse_existing(self.to.as_deref(), self.force)?;
+        refuse_to_overwrite(self.to.as_deref(), "--to", &[Some(&self.sweep)])?;
         let unit = self.strain_unit.map(|unit| match unit {
             Unit::Percent => StrainUnit::Percent,
             Unit::Fraction => StrainUnit::Fraction,

@@ -16,7 +16,7 @@ use asperity::contact::ContactSolution;
 use asperity::contact::effective::{Feedback, FeedbackContact, FeedbackSetup, HeatFeedback};
 use asperity::contact::refine::{HALF_SPACE, OnGrid, Refined, on_grid};
 use asperity::contact::sliding::POINTS_RANGE;
-use asperity::rubber::TemperatureDependence;
+use asperity::rubber::{HOTTEST_C, TemperatureDependence};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -127,6 +127,17 @@ impl Heat {
             summary.hot.contact_area_fraction,
             summary.contact_rise_k,
         ])?;
+        let hottest = law.reference_c + summary.highest_rise_k;
+        let known = law.measured_c.map_or(HOTTEST_C, |[_, highest]| highest);
+        if hottest > known {
+            note(
+                quiet,
+                format_args!(
+                    "warning: the rubber becomes up to {hottest:.1} °C warm, and its shift with temperature is known up to {known} °C: \
+                     beyond that it is extrapolated"
+                ),
+            );
+        }
         if summary.sliding_distance_mm < shape.period.m_to_mm() {
             note(
                 quiet,

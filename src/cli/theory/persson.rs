@@ -195,6 +195,12 @@ impl PerssonCommand {
             tolerance: self.tolerance,
         };
         let speeds: Vec<f64> = self.speed.iter().flat_map(|speeds| speeds.0.clone()).collect();
+        let per_decade = self.magnifications_per_decade.map_or(1.0, f64::from);
+        if per_decade > MOST_ROWS as f64 {
+            return Err(CliError::input(format!(
+                "--magnifications-per-decade is {per_decade}, at most {MOST_ROWS} rows are given: ask for fewer"
+            )));
+        }
         let marks = self.marks(surface.band);
         let count = speeds.len() * self.pressure.len() * marks.len();
         if count > MOST_ROWS {

@@ -96,7 +96,7 @@ fn maps_alone(ingest: &Ingest, files: &[ScanFile], read: &[ReadFile]) -> Vec<Str
     let set = ingest.conditioning != Conditioning::default();
     let idle = if set { " and [ingest.conditioning] does nothing" } else { "" };
     let mut warnings = vec![format!(
-        "the maps stand alone (realise.profiles = false): no line scans are taken of them, there are no tables of lines, and          the stage approximate is left out{idle}"
+        "the maps stand alone (realise.profiles = false): no line scans are taken of them, there are no tables of lines, and the stage approximate is left out{idle}"
     )];
     let lines: Vec<&ScanFile> = files
         .iter()

@@ -2,6 +2,7 @@
 
 use crate::interface::{Activation, GaussianShear, ShearError, ShearLaw, ShearTable};
 use crate::requirement::{InvalidRecipe, require};
+use crate::rubber::HOTTEST_C;
 use crate::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,9 @@ pub struct Adhesion {
     pub shortest_wavelength_mm: f64,
 }
 
+/// Largest shear stress in MPa that a recipe may state; glassy rubber has less.
+const MOST_MPA: f64 = 1e3;
+
 /// A dependence of the shear stress on the speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -51,7 +55,11 @@ pub enum Law {
 
 impl Adhesion {
     /// Checks the section; the temperature in °C is that of the recipe.
-    pub(crate) fn check(&self, temperature_c: Option<f64>) -> Result<(), InvalidRecipe> {
+    pub(crate) fn check(
+        &self,
+        temperature_c: Option<f64>,
+        speeds_mm_s: &[f64],
+    ) -> Result<(), InvalidRecipe> {
         let shortest = self.shortest_wavelength_mm;
         let usable = shortest > 0.0 && shortest.is_finite();
         require(usable, "adhesion.shortest_wavelength_mm", shortest, "positive and finite")?;
@@ -76,6 +84,13 @@ impl Adhesion {
                 }
                 (Law::Gaussian, Some(value)) => {
                     require(value > 0.0 && value.is_finite(), key, value, "positive and finite")?;
+                    let stress = key == "adhesion.shear_mpa";
+                    require(
+                        !stress || value <= MOST_MPA,
+                        key,
+                        value,
+                        "at most 1000 MPa; was it given in Pa?",
+                    )?;
                 }
                 (Law::Table, None) => {}
             }
@@ -99,13 +114,29 @@ impl Adhesion {
             let advice = "the shear stress shifts with temperature (adhesion.activation_ev): state the temperature of the rubber";
             return Err(InvalidRecipe::Missing { key: "bem.temperature_c", advice });
         }
+        let celsius = self.reference_c.unwrap_or(20.0);
+        let plausible = (-100.0..=HOTTEST_C).contains(&celsius);
+        require(
+            plausible,
+            "adhesion.reference_c",
+            celsius,
+            "between -100 and 150 °C; is it in K?",
+        )?;
         if let (None, Some(reference_c)) = (self.activation_ev, self.reference_c) {
             let required = "left out without adhesion.activation_ev: it has no effect";
             require(false, "adhesion.reference_c", reference_c, required)?;
         }
-        if self.shear_law().is_err() {
+        let Ok(law) = self.shear_law() else {
             let required = "two pairs or more of a positive speed in mm/s and a positive stress in MPa, speeds ascending";
-            require(false, "adhesion.points", &self.points, required)?;
+            return require(false, "adhesion.points", &self.points, required);
+        };
+        // A table that ends too early is told before anything is solved.
+        let temperature_c = temperature_c.unwrap_or(20.0);
+        for speed_mm_s in speeds_mm_s {
+            let covered = law.stress(speed_mm_s.mm_to_m(), temperature_c).is_ok();
+            let required = "within the speeds of adhesion.points (at the reference temperature, where the law shifts): extend the table, \
+                 or leave the speed out";
+            require(covered, "bem.speeds_mm_s", speed_mm_s, required)?;
         }
         Ok(())
     }
@@ -152,18 +183,19 @@ mod tests {
 
     #[test]
     fn a_law_that_shifts_needs_the_temperature() {
-        parse(BELL).check(None).unwrap();
+        parse(BELL).check(None, &[10.0]).unwrap();
         let shifted = parse(&format!("{BELL}activation_ev = 0.97\nreference_c = 20.0\n"));
-        shifted.check(Some(5.0)).unwrap();
-        let error = shifted.check(None).unwrap_err().to_string();
+        shifted.check(Some(5.0), &[10.0]).unwrap();
+        let error = shifted.check(None, &[10.0]).unwrap_err().to_string();
         assert!(error.starts_with("bem.temperature_c is missing"), "{error}");
-        let alone = parse(&format!("{BELL}reference_c = 20.0\n")).check(Some(5.0)).unwrap_err();
+        let alone =
+            parse(&format!("{BELL}reference_c = 20.0\n")).check(Some(5.0), &[10.0]).unwrap_err();
         assert!(alone.to_string().contains("adhesion.reference_c = 20"), "{alone}");
     }
 
     #[test]
     fn keys_of_the_other_law_and_bad_numbers_are_refused() {
-        let error = |text: &str| parse(text).check(None).unwrap_err().to_string();
+        let error = |text: &str| parse(text).check(None, &[10.0]).unwrap_err().to_string();
         let table = "law = 'table'\nshortest_wavelength_mm = 0.06\n";
         assert!(error(table).contains("adhesion.points"));
         assert!(error(&format!("{table}points = [[1.0, 2.0], [0.5, 3.0]]")).contains("ascending"));
@@ -173,6 +205,10 @@ mod tests {
         let missing =
             "law = 'gaussian'\nshear_mpa = 6.5\nwidth = 0.1\nshortest_wavelength_mm = 0.06\n";
         assert!(error(missing).starts_with("adhesion.speed_mm_s is missing"));
-        parse(&format!("{table}points = [[1.0, 2.0], [2.0, 3.0]]")).check(None).unwrap();
+        let narrow = parse(&format!("{table}points = [[1.0, 2.0], [2.0, 3.0]]"));
+        narrow.check(None, &[1.5]).unwrap();
+        let beyond = narrow.check(None, &[1.5, 3.0]).unwrap_err().to_string();
+        assert!(beyond.contains("bem.speeds_mm_s = 3"), "{beyond}");
+        assert!(error(&BELL.replace("6.5", "6.5e6")).contains("in Pa?"));
     }
 }

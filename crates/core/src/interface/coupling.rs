@@ -10,10 +10,11 @@ use rustfft::num_complex::Complex64;
 
 /// Most contacts that are solved.
 const MOST_STEPS: usize = 60;
-/// After so many steps the shear is relaxed by half, which ends cycles of points that change sides.
-const RELAXED_AFTER: usize = 12;
 /// Change of friction between two steps, absolute over the sum of both frictions, below which it has settled.
-const SETTLED: f64 = 1e-9;
+const SETTLED: f64 = 1e-7;
+/// Pressure over the pressure-weighted mean pressure below which the shear stress fades: points change sides at the edges of
+/// contacts, and a stress that jumps with them has no fixed point.
+const FADES: f64 = 0.1;
 
 /// Friction with a shear stress in the contact area, and what the shear does to the contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +23,10 @@ pub struct ShearCoupling {
     pub hysteretic: f64,
     /// The same without shear.
     pub hysteretic_alone: f64,
-    /// Friction by the shear, `τ_f A / (p A_0)`, with A read at grid points.
+    /// Friction by the shear, `mean(τ) / p`.
     pub adhesive: f64,
+    /// The same if the contact were that without shear.
+    pub adhesive_alone: f64,
     /// Contact area fraction under shear, read at grid points.
     pub contact_area_fraction: f64,
     /// The same without shear.
@@ -32,7 +35,8 @@ pub struct ShearCoupling {
     pub steps: usize,
 }
 
-/// Steady contact at a mean pressure in Pa with a constant shear stress τ_f in Pa wherever the surfaces touch.
+/// Steady contact at a mean pressure in Pa with a constant shear stress τ_f in Pa wherever the surfaces touch; it fades to nothing
+/// where the pressure is below a tenth of its pressure-weighted mean, at the edges of contacts.
 ///
 /// Shear moves the surface of a half-space up or down unless ν = 1/2. With τ the shear stress against the motion,
 ///
@@ -41,7 +45,7 @@ pub struct ShearCoupling {
 /// ```
 ///
 /// (Johnson, Contact Mechanics, 1985, section 2.4; β is Dundurs' second constant against a rigid body). β is 0.0196 at
-/// ν = 0.49. The motion by the shear is taken off the heights, and the contact is solved again until friction has settled to 1e-9.
+/// ν = 0.49. The motion by the shear is taken off the heights, and the contact is solved again until friction has settled to 1e-7.
 /// `heights` in m on equidistant points of the `period` in m, `speed` in m/s.
 ///
 /// # Errors
@@ -73,19 +77,17 @@ pub fn shear_coupling(
         work / heights.len() as f64 / mean_pressure
     };
     let hysteretic_alone = on_slopes(&alone);
-    let mut shear = vec![0.0; heights.len()];
+    let friction_of =
+        |shear: &[f64]| shear.iter().sum::<f64>() / heights.len() as f64 / mean_pressure;
+    let adhesive_alone = friction_of(&shear_of(&alone, shear_stress));
     let (mut solution, mut last, mut change) = (alone.clone(), f64::INFINITY, f64::INFINITY);
     for step in 1..=MOST_STEPS {
-        let weight = if step > RELAXED_AFTER { 0.5 } else { 1.0 };
-        for (tau, t) in shear.iter_mut().zip(&solution.pressure) {
-            let now = if *t > 0.0 { shear_stress } else { 0.0 };
-            *tau += weight * (now - *tau);
-        }
+        let shear = shear_of(&solution, shear_stress);
         let moved = motion(&mut space, &mut planner, &shear, beta);
         let lowered: Vec<f64> = heights.iter().zip(&moved).map(|(z, w)| z - w).collect();
         solution = SlidingContact::new(rubber, speed, period, &lowered)?.solve(mean_pressure)?;
         let hysteretic = on_slopes(&solution);
-        let adhesive = shear_stress * area(&solution) / mean_pressure;
+        let adhesive = friction_of(&shear_of(&solution, shear_stress));
         let friction = hysteretic + adhesive;
         change = (friction - last).abs() / (hysteretic.abs() + adhesive).max(f64::MIN_POSITIVE);
         if change < SETTLED || beta == 0.0 || shear_stress == 0.0 {
@@ -93,6 +95,7 @@ pub fn shear_coupling(
                 hysteretic,
                 hysteretic_alone,
                 adhesive,
+                adhesive_alone,
                 contact_area_fraction: area(&solution),
                 contact_area_fraction_alone: area(&alone),
                 steps: step,
@@ -101,6 +104,14 @@ pub fn shear_coupling(
         last = friction;
     }
     Err(ShearError::CouplingNotConverged { steps: MOST_STEPS, change })
+}
+
+/// Shear stress in Pa at every point of a contact.
+fn shear_of(solution: &ContactSolution, shear_stress: f64) -> Vec<f64> {
+    let pressure = &solution.pressure;
+    let square: f64 = pressure.iter().map(|t| t * t).sum();
+    let fades = FADES * square / pressure.iter().sum::<f64>();
+    pressure.iter().map(|t| shear_stress * (t / fades).clamp(0.0, 1.0)).collect()
 }
 
 /// Motion of the surface into the rubber in m by a shear stress against the motion: `i β sgn(q)` times what a pressure
@@ -156,11 +167,10 @@ mod tests {
         let with = coupled(&rubber, 3e6);
         assert_eq!(with.hysteretic, with.hysteretic_alone);
         assert_eq!(with.contact_area_fraction, with.contact_area_fraction_alone);
-        approx::assert_relative_eq!(
-            with.adhesive,
-            3e6 * with.contact_area_fraction / 1e5,
-            max_relative = 1e-14
-        );
+        assert_eq!(with.adhesive, with.adhesive_alone);
+        // Nearly all of the contact carries the full stress.
+        let full = 3e6 * with.contact_area_fraction / 1e5;
+        assert!((0.9 * full..full).contains(&with.adhesive), "{with:?}");
     }
 
     /// Points ahead of a load Q along x move into the body by (1 - 2ν)(1 + ν) Q / (2 E), points behind it out of it:
@@ -204,7 +214,7 @@ mod tests {
         for speed in [1e-3, 1e-2, 1e-1, 1.0] {
             let with =
                 shear_coupling(&Rubber::table_2_1(), speed, 1e-3, &profile, 3e5, 5e6).unwrap();
-            let sum = with.hysteretic_alone + 5e6 * with.contact_area_fraction_alone / 3e5;
+            let sum = with.hysteretic_alone + with.adhesive_alone;
             let total = with.hysteretic + with.adhesive;
             println!("{speed:e} m/s: sum {sum:.5}, coupled {total:.5}, {with:?}");
             assert!((total / sum - 1.0).abs() < 0.05, "{with:?}");

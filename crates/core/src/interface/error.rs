@@ -72,7 +72,7 @@ pub enum ShearError {
     NothingLeft,
     /// The fit did not reach a minimum.
     #[error(
-        "the constants of the shear law do not settle: the measurements do not determine them; fix the width or the speed"
+        "the constants of the shear law do not settle: the measurements do not determine them; measure over more speeds (and temperatures, for the activation energy), or fix the constants that are known"
     )]
     NotConverged,
     /// Contact under shear did not settle.

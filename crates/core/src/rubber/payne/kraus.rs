@@ -64,7 +64,8 @@ impl Kraus {
     /// [`PayneError::Number`].
     pub fn validate(&self, temperature_c: Option<f64>) -> Result<(), PayneError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        // The loss of a rubber grows by a factor of a few at most; a fit to a sweep with a wrong row has no bound.
+        let factor = |value: f64| (0.0..=100.0).contains(&value);
         let checks = [
             (
                 "critical_strain",
@@ -84,8 +85,8 @@ impl Kraus {
                 (0.0..=1.0).contains(&self.storage_limit),
                 "between 0 and 1",
             ),
-            ("loss_limit", self.loss_limit, not_negative(self.loss_limit), "0 or more, and finite"),
-            ("loss_peak", self.loss_peak, not_negative(self.loss_peak), "0 or more, and finite"),
+            ("loss_limit", self.loss_limit, factor(self.loss_limit), "between 0 and 100"),
+            ("loss_peak", self.loss_peak, factor(self.loss_peak), "between 0 and 100"),
             (
                 "highest_strain",
                 self.highest_strain,
@@ -128,9 +129,11 @@ impl Kraus {
         let own = problem(true);
         let rms_of_own_law = own.best(&ordered).map(|minimum| own.rms(&minimum.parameters));
         let highest_strain = ordered.points[ordered.points.len() - 1].strain;
+        let law = extended.law(&found, highest_strain);
+        law.validate(temperature_c).map_err(|_| PayneError::NoFit { temperature_c })?;
         Ok(KrausFit {
             temperature_c,
-            law: extended.law(&found, highest_strain),
+            law,
             storage_modulus: found[0].exp(),
             loss_modulus: found[1].exp(),
             rms: extended.rms(&found),
