@@ -1,14 +1,8 @@
-//! Water under a sliding block, as far as it can be told without solving its flow.
+//! Water under a sliding block, as far as it can be told without solving its flow: the film that is left after a time
+//! ([`SqueezeOut`]).
 //!
-//! | item | what it holds |
-//! |---|---|
-//! | [`fill_pools`] | a map whose sealed valleys are full of water |
-//! | [`SqueezeOut`] | the film that is left under a smooth block after a time |
-//!
-//! Mixed lubrication is not here: where a film carries part of the load, neither dry nor sealed contact holds.
+//! Mixed lubrication is not here: where a film carries part of the load, dry contact does not hold.
 
-mod pools;
 mod squeeze;
 
-pub use pools::{Pools, fill_pools};
 pub use squeeze::{Footprint, SqueezeError, SqueezeOut};
