@@ -31,6 +31,7 @@
 //! | `sweep` | many cases on many machines |
 //! | `synth` | synthetic scans of asphalt |
 //! | `theory` | what older theories predict, without a contact being solved |
+//! | `text_file` | text files of numbers, with the place of what is wrong |
 //! | `threads` | the threads of a command |
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
@@ -60,6 +61,7 @@ mod solve;
 mod status;
 mod sweep;
 mod synth;
+mod text_file;
 mod theory;
 mod threads;
 mod values;

@@ -130,7 +130,7 @@ fn read(path: &Path) -> Result<Vec<UniaxialPoint>, String> {
         let line = record.position().map_or(0, csv::Position::line);
         let number = |at: usize| {
             let text = record.get(at).unwrap_or_default();
-            text.parse::<f64>().map_err(|_| format!("line {line}: {text:?} is no number"))
+            text.parse::<f64>().map_err(|_| format!("line {line}: {text:?} is not a number"))
         };
         points.push(UniaxialPoint {
             stretch: number(stretch.0)? + stretch.1,

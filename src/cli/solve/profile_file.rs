@@ -1,11 +1,11 @@
 //! A periodic profile in a text file of two columns.
 
+use crate::cli::text_file::{self, Located};
 use asperity::units::Units;
 use std::path::Path;
 
 use super::shape::Shape;
 use crate::cli::values;
-use asperity::files;
 use asperity::scans::description::LengthUnit;
 
 /// Largest deviation of a position from equal spacing, in spacings: positions printed with few
@@ -17,18 +17,8 @@ const SPACING_TOLERANCE: f64 = 0.05;
 /// # Errors
 /// A message with the file and the line.
 pub(super) fn read_profile(path: &Path, unit: LengthUnit) -> Result<Shape, String> {
-    let in_file = |problem: String| format!("{}: {problem}", path.display());
-    let bytes = files::read(path, files::LARGEST_NUMBERS)
-        .map_err(|error| in_file(format!("cannot be read: {error}{}", files::advice(&error))))?;
-    let text = String::from_utf8(bytes).map_err(|_| in_file("is not UTF-8 text".into()))?;
-    parse_profile(&text, unit).map_err(|(line, problem)| match line {
-        Some(line) => format!("{}, line {line}: {problem}", path.display()),
-        None => in_file(problem),
-    })
+    text_file::read(path, |text| parse_profile(text, unit))
 }
-
-/// A problem and its line, counted from 1, if it has one.
-type Located = (Option<usize>, String);
 
 /// One line of the file.
 struct Point {

@@ -1,7 +1,7 @@
 //! A spectrum in a text file of two columns, wavenumber and density.
 
+use crate::cli::text_file::{self, Located};
 use crate::cli::values;
-use asperity::files;
 use asperity::surface::spectrum::IsotropicSpectrum;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -88,18 +88,8 @@ pub(super) type Found = (IsotropicSpectrum, usize);
 /// # Errors
 /// A message with the file and the line.
 pub(super) fn read_spectrum(path: &Path, conventions: Conventions) -> Result<Found, String> {
-    let in_file = |problem: String| format!("{}: {problem}", path.display());
-    let bytes = files::read(path, files::LARGEST_NUMBERS)
-        .map_err(|error| in_file(format!("cannot be read: {error}{}", files::advice(&error))))?;
-    let text = String::from_utf8(bytes).map_err(|_| in_file("is not UTF-8 text".into()))?;
-    parse_spectrum(&text, conventions).map_err(|(line, problem)| match line {
-        Some(line) => format!("{}, line {line}: {problem}", path.display()),
-        None => in_file(problem),
-    })
+    text_file::read(path, |text| parse_spectrum(text, conventions))
 }
-
-/// A problem and its line, counted from 1, if it has one.
-type Located = (Option<usize>, String);
 
 fn parse_spectrum(text: &str, conventions: Conventions) -> Result<Found, Located> {
     let (mut wavenumbers, mut densities) = (Vec::new(), Vec::new());

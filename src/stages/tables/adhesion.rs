@@ -63,6 +63,25 @@ impl Adhesion {
         let shortest = self.shortest_wavelength_mm;
         let usable = shortest > 0.0 && shortest.is_finite();
         require(usable, "adhesion.shortest_wavelength_mm", shortest, "positive and finite")?;
+        self.check_shape()?;
+        self.check_shift(temperature_c)?;
+        let Ok(law) = self.shear_law() else {
+            let required = "two pairs or more of a positive speed in mm/s and a positive stress in MPa, speeds ascending";
+            return require(false, "adhesion.points", &self.points, required);
+        };
+        // A table that ends too early is told before anything is solved.
+        let temperature_c = temperature_c.unwrap_or(20.0);
+        for speed_mm_s in speeds_mm_s {
+            let covered = law.stress(speed_mm_s.mm_to_m(), temperature_c).is_ok();
+            let required = "within the speeds of adhesion.points (at the reference temperature, where the law shifts): extend the table, \
+                 or leave the speed out";
+            require(covered, "bem.speeds_mm_s", speed_mm_s, required)?;
+        }
+        Ok(())
+    }
+
+    /// Checks that the keys are those of the law.
+    fn check_shape(&self) -> Result<(), InvalidRecipe> {
         let of_a_bell = [
             ("adhesion.shear_mpa", self.shear_mpa),
             ("adhesion.speed_mm_s", self.speed_mm_s),
@@ -96,7 +115,11 @@ impl Adhesion {
             }
         }
         let gaussian = self.law == Law::Gaussian && !self.points.is_empty();
-        require(!gaussian, "adhesion.points", &self.points, "left out beside law = \"gaussian\"")?;
+        require(!gaussian, "adhesion.points", &self.points, "left out beside law = \"gaussian\"")
+    }
+
+    /// Checks how the law shifts to the temperature in °C of the recipe.
+    fn check_shift(&self, temperature_c: Option<f64>) -> Result<(), InvalidRecipe> {
         let energy = self.activation_ev.unwrap_or(0.5);
         let physical = (0.0..=10.0).contains(&energy);
         require(
@@ -125,18 +148,6 @@ impl Adhesion {
         if let (None, Some(reference_c)) = (self.activation_ev, self.reference_c) {
             let required = "left out without adhesion.activation_ev: it has no effect";
             require(false, "adhesion.reference_c", reference_c, required)?;
-        }
-        let Ok(law) = self.shear_law() else {
-            let required = "two pairs or more of a positive speed in mm/s and a positive stress in MPa, speeds ascending";
-            return require(false, "adhesion.points", &self.points, required);
-        };
-        // A table that ends too early is told before anything is solved.
-        let temperature_c = temperature_c.unwrap_or(20.0);
-        for speed_mm_s in speeds_mm_s {
-            let covered = law.stress(speed_mm_s.mm_to_m(), temperature_c).is_ok();
-            let required = "within the speeds of adhesion.points (at the reference temperature, where the law shifts): extend the table, \
-                 or leave the speed out";
-            require(covered, "bem.speeds_mm_s", speed_mm_s, required)?;
         }
         Ok(())
     }

@@ -124,7 +124,7 @@ mod tests {
         assert!(from_one_mm < left && from_one_mm > 0.9999 * left);
     }
 
-    /// The law solves dh/dt = -h³ p / (η w²) of Reynolds' equation: steps of Runge and Kutta beside it.
+    /// The closed form solves Reynolds' equation dh/dt = -h³ p / (η w²): steps of Runge and Kutta beside it.
     #[test]
     fn the_film_obeys_the_equation_of_reynolds() {
         for footprint in [Footprint::Strip { width: 0.01 }, Footprint::Disc { radius: 0.004 }] {

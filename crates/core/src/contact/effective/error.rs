@@ -42,7 +42,7 @@ pub enum EffectiveError {
     /// The steps ended before the fixed point was reached.
     #[error(
         "the effective moduli did not converge in {steps} steps at p = {pressure:e} Pa, v = {speed:e} m/s: they still change \
-         by {moduli:.1e} and friction or area by {contact:.1e} (relative, {tolerance:.0e} is wanted); use more points, or a \
+         by {moduli:.1e} and friction or area by {contact:.1e} (relative; the tolerance is {tolerance:.0e}); use more points, or a \
          larger tolerance"
     )]
     NotConverged {

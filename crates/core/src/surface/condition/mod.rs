@@ -256,7 +256,7 @@ impl Conditioning {
         };
         if let Some([lowest, highest]) = self.valid_range_mm {
             let demand = "the range is [lowest, highest], and its ends are swapped or the same: give the lowest height first";
-            // What is no number is told of below.
+            // NaN is reported below.
             let swapped = lowest >= highest;
             check("valid_range_mm", lowest, !swapped, demand)?;
             let demand = "the range [lowest, highest] must hold the median, 0";

@@ -169,7 +169,7 @@ impl MapConditioning {
         };
         if let Some([lowest, highest]) = self.valid_range_mm {
             let require = "the range is [lowest, highest], and its ends are swapped or the same: give the lowest height first";
-            // What is no number is told of below.
+            // NaN is reported below.
             let swapped = lowest >= highest;
             check("valid_range_mm", lowest, !swapped, require)?;
             let require = "the range [lowest, highest] must hold the median, 0";
