@@ -22,6 +22,7 @@ use crate::stages::{
     areal::Areal,
     bem::Bem,
     characterise::Characterise,
+    feedback::Feedback,
     fem::Fem,
     hybrid::Hybrid,
     ingest::Ingest,
@@ -69,6 +70,9 @@ pub struct Recipe {
     /// Sliding contact of areal surfaces, where maps are kept or isotropic surfaces are made.
     #[serde(default, skip_serializing_if = "is_default")]
     pub areal: Areal,
+    /// Contacts with their own heat and strain, beside those of `bem`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feedback: Option<Feedback>,
     /// The steepest waves at finite deformation; with it, friction is corrected by them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub micro: Option<Micro>,
@@ -240,6 +244,7 @@ impl Recipe {
             ("realise", self.realise.is_some()),
             ("bem", self.bem.is_some()),
             ("areal", self.areal != Areal::default()),
+            ("feedback", self.feedback.is_some()),
             ("micro", self.micro.is_some()),
             ("hybrid", self.hybrid.is_some()),
             ("fem", self.fem.is_some()),
@@ -266,6 +271,7 @@ impl Recipe {
             realise: self.realise.as_ref().ok_or(missing("realise"))?,
             bem: self.bem.as_ref().ok_or(missing("bem"))?,
             areal: &self.areal,
+            feedback: self.feedback.as_ref(),
             micro: self.micro.as_ref(),
             hybrid: self.hybrid.unwrap_or_default(),
             fem: self.fem.as_ref(),
@@ -315,7 +321,8 @@ impl Chain<'_> {
         for (key, given) in finite {
             require(has_lines || !given, key, "a section", wanted)?;
         }
-        Ok(())
+        let wanted = "left out where no profile is made: heat and softening are for profiles";
+        require(has_lines || self.feedback.is_none(), "feedback", "a section", wanted)
     }
 
     fn check(&self) -> Result<(), InvalidRecipe> {
@@ -333,6 +340,10 @@ impl Chain<'_> {
         self.adhesion.map_or(Ok(()), |adhesion| {
             adhesion.check(self.bem.temperature_c, &self.bem.speeds_mm_s)
         })?;
+        if let Some(feedback) = self.feedback {
+            let shear = self.adhesion.and_then(|adhesion| adhesion.shear_law().ok());
+            feedback.check(self.bem, shear.as_ref())?;
+        }
         let limit = self.realise.most_realisations.unwrap_or(0);
         require(
             limit == 0 || self.bem.average_tolerance.is_some(),
