@@ -159,13 +159,9 @@ impl<'a> Curve<'a> {
     }
 
     /// The contact at a pressure in Pa on a grid that is fine enough for it, with its errors by the grid.
-    pub fn contact(
-        &mut self,
-        pressure: f64,
-    ) -> Result<(SolveRow, Option<GridError>), SolveError> {
+    pub fn contact(&mut self, pressure: f64) -> Result<(SolveRow, Option<GridError>), SolveError> {
         let rule = self.rule;
-        let refined =
-            rule.refined(pressure, |points| self.solve(pressure, points), on_its_grid)?;
+        let refined = rule.refined(pressure, |points| self.solve(pressure, points), on_its_grid)?;
         let discretisation_error = refined.error.map(|error| error.friction_coefficient);
         Ok((SolveRow { discretisation_error, ..refined.solution }, refined.error))
     }
@@ -216,6 +212,11 @@ impl GridRule {
             base_points: base_points(parameters, surface),
             first_points: points(surface, FIRST_POINTS_PER_WAVE),
         }
+    }
+
+    /// Points of the grid of a contact that is not small.
+    pub fn usual_points(&self) -> usize {
+        self.base_points
     }
 
     /// Points of the coarsest grid that is solved.
