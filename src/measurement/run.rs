@@ -3,9 +3,12 @@
 use crate::artifact::{ArtifactError, RunView};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::interpolation::CubicHermite;
-use crate::stages::bem::Given;
-use crate::stages::realise::SurfaceKind;
+use crate::numerics::statistics::MeanEstimate;
+use crate::stages::areal::AREAL_CURVES;
+use crate::stages::bem::{CURVES, Given};
+use crate::stages::realise::{PROFILES, SurfaceKind};
 use crate::stages::tables::{FRICTION, FrictionRow, Model};
+use std::collections::BTreeMap;
 
 /// Pressures that differ by less, relative, are the same: tables state them with all digits, people with two.
 const SAME_PRESSURE: f64 = 1e-3;
@@ -36,9 +39,8 @@ pub struct Computed {
     pub speeds_mm_s: [f64; 2],
     friction: CubicHermite,
     ln_area: CubicHermite,
-    error: CubicHermite,
-    /// Whether every row has an estimated error.
-    errors_known: bool,
+    error: Option<CubicHermite>,
+    relative_area_error: Option<CubicHermite>,
 }
 
 /// What a run has at one speed.
@@ -50,6 +52,20 @@ pub struct ComputedAt {
     pub contact_area_fraction: f64,
     /// Estimated error of the hysteretic friction; `None` if that of one row is not known.
     pub error: Option<f64>,
+    /// Relative error of the contact area: its 95 % interval by the windows, or by the realisations of sines, and its error by the grid;
+    /// `None` where one of them is not known.
+    pub relative_area_error: Option<f64>,
+}
+
+/// What a run has: a model, a kind of surfaces and a pressure, of which [`Computed::read`] takes one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Available {
+    /// Contact model.
+    pub model: Model,
+    /// Kind of surfaces.
+    pub kind: SurfaceKind,
+    /// Mean pressure in MPa.
+    pub pressure_mpa: f64,
 }
 
 /// Why a run has nothing to compare with.
@@ -155,10 +171,15 @@ impl Computed {
         let [first, .., last] = &rows[..] else {
             return Err(ComputedError::TooFewSpeeds { count: rows.len() });
         };
-        let curve = |value: fn(&FrictionRow) -> f64| {
+        let over_speed = |values: Vec<f64>| {
             let speeds = rows.iter().map(|row| row.speed_mm_s.ln()).collect();
-            CubicHermite::monotone_parabolas(speeds, rows.iter().map(value).collect())
+            CubicHermite::monotone_parabolas(speeds, values)
         };
+        let curve = |value: fn(&FrictionRow) -> f64| over_speed(rows.iter().map(value).collect());
+        let errors: Option<Vec<f64>> = rows.iter().map(|row| row.error_estimate).collect();
+        let areas = Areas::read(run, model, first.kind)?;
+        let area_errors: Option<Vec<f64>> =
+            rows.iter().map(|row| areas.relative_error(row)).collect();
         Ok(Self {
             model,
             kind: first.kind,
@@ -167,9 +188,25 @@ impl Computed {
             speeds_mm_s: [first.speed_mm_s, last.speed_mm_s],
             friction: curve(|row| row.mean),
             ln_area: curve(|row| row.contact_area_fraction.ln()),
-            error: curve(|row| row.error_estimate.unwrap_or(0.0)),
-            errors_known: rows.iter().all(|row| row.error_estimate.is_some()),
+            error: errors.map(over_speed),
+            relative_area_error: area_errors.map(over_speed),
         })
+    }
+
+    /// What a run has at given pressures, in the order of its table.
+    ///
+    /// # Errors
+    /// [`ComputedError::Artifact`].
+    pub fn available(run: &RunView) -> Result<Vec<Available>, ComputedError> {
+        let mut found: Vec<Available> = Vec::new();
+        for row in run.rows(FRICTION)?.iter().filter(|row| row.given == Given::Pressure) {
+            let FrictionRow { model, kind, pressure_mpa, .. } = *row;
+            let new = Available { model, kind, pressure_mpa };
+            if !found.contains(&new) {
+                found.push(new);
+            }
+        }
+        Ok(found)
     }
 
     /// At a speed in mm/s, interpolated in its logarithm. `shifted` tells the message that the speed is that of another
@@ -192,8 +229,81 @@ impl Computed {
         Ok(ComputedAt {
             hysteretic: self.friction.at(at),
             contact_area_fraction: self.ln_area.at(at).exp(),
-            error: self.errors_known.then(|| self.error.at(at)),
+            error: self.error.as_ref().map(|error| error.at(at)),
+            relative_area_error: self.relative_area_error.as_ref().map(|error| error.at(at)),
         })
+    }
+}
+
+/// Contact areas of every surface of one kind at given pressures.
+struct Areas {
+    /// Speed in mm/s, pressure in MPa, realisation, area, relative error by the grid.
+    values: Vec<(f64, f64, u32, f64, Option<f64>)>,
+    /// The window of every surface of one.
+    window_of: BTreeMap<u32, String>,
+}
+
+impl Areas {
+    fn read(run: &RunView, model: Model, kind: SurfaceKind) -> Result<Self, ArtifactError> {
+        let mut areas = Self { values: Vec::new(), window_of: BTreeMap::new() };
+        if !matches!(model, Model::Bem | Model::Hybrid) {
+            return Ok(areas);
+        }
+        if kind.method.is_areal() {
+            let rows = run.rows(AREAL_CURVES)?;
+            let own = rows.iter().filter(|row| row.kind == kind && row.given == Given::Pressure);
+            // One direction is that of the tables: the first.
+            let first = rows.first().map(|row| row.angle_deg);
+            areas.values = own
+                .filter(|row| Some(row.angle_deg) == first)
+                .map(|row| {
+                    let area = row.contact_area_fraction;
+                    (
+                        row.speed_mm_s,
+                        row.pressure_mpa,
+                        row.realisation,
+                        area,
+                        row.relative_area_error,
+                    )
+                })
+                .collect();
+            return Ok(areas);
+        }
+        let rows = run.rows(CURVES)?;
+        let own = rows.iter().filter(|row| row.kind == kind && row.given == Given::Pressure);
+        areas.values = own
+            .map(|row| {
+                let area = row.contact_area_fraction;
+                (row.speed_mm_s, row.pressure_mpa, row.realisation, area, row.relative_area_error)
+            })
+            .collect();
+        if kind.method.of_a_window() {
+            let rows = run.rows(PROFILES)?.into_iter().filter(|row| row.kind == kind);
+            areas.window_of = rows.map(|row| (row.realisation, row.window)).collect();
+        }
+        Ok(areas)
+    }
+
+    /// The 95 % interval of the mean area and its mean error by the grid, relative. Draws of one window count once.
+    fn relative_error(&self, row: &FrictionRow) -> Option<f64> {
+        let own = self.values.iter().filter(|(speed, pressure, ..)| {
+            *speed == row.speed_mm_s && (pressure / row.pressure_mpa - 1.0).abs() < SAME_PRESSURE
+        });
+        let mut by_window: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+        let (mut grid, mut count) = (0.0, 0.0);
+        for (.., realisation, area, error) in own {
+            let window = self.window_of.get(realisation).cloned();
+            by_window
+                .entry(window.unwrap_or_else(|| realisation.to_string()))
+                .or_default()
+                .push(*area);
+            grid += (*error)?;
+            count += 1.0;
+        }
+        let means: Vec<f64> = by_window.values().map(|own| MeanEstimate::of(own).mean).collect();
+        let estimate = MeanEstimate::of(&means);
+        let error = estimate.confidence_95 / estimate.mean + grid / count;
+        error.is_finite().then_some(error)
     }
 }
 
