@@ -22,6 +22,7 @@ mod sinusoid;
 mod spreadsheet;
 mod tables;
 
+pub(crate) use tables::significant;
 pub use about::About;
 pub use compare::{Compared, Difference, Pairing, compare};
 pub use figures::{friction_figure, rubber_fit_figure, study_figure};

@@ -1,6 +1,7 @@
 //! The comparison as text.
 
 use super::judge::{Case, Constant, Judged, Validated};
+use crate::report::significant;
 use std::fmt::Write;
 
 impl Case {
@@ -64,12 +65,21 @@ impl Validated {
     }
 }
 
-/// The fitted constants; those that were not fitted stand in parentheses.
+/// Ratio of the ends of an interval beyond which measurements do not determine a constant.
+const UNDETERMINED: f64 = 1e3;
+
+/// The fitted constants with their intervals; those that were not fitted stand in brackets.
 fn laws(result: &Judged) -> String {
     let constant = |constant: &Constant| {
         let Constant { key, value, interval_95 } = constant;
         match interval_95 {
-            Some([low, high]) => format!("{key} {value:.3} ({low:.3} to {high:.3})"),
+            Some([low, high]) if *high > UNDETERMINED * low => {
+                format!("{key} {} (not determined)", significant(*value))
+            }
+            Some(ends) => {
+                let [low, high] = ends.map(significant);
+                format!("{key} {} ({low} to {high})", significant(*value))
+            }
             None => format!("[{key} {value}]"),
         }
     };
