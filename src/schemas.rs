@@ -4,7 +4,7 @@
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
 use crate::stages::{
-    approximate, areal, bem, characterise, fem, hybrid, ingest, micro, multilevel, realise,
+    approximate, areal, bem, characterise, feedback, fem, hybrid, ingest, micro, multilevel, realise,
     sinusoid, tables,
 };
 use crate::sweep::SweepFrictionRow;
@@ -58,6 +58,8 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<areal::ArealCurveRow>()?,
         table::<areal::ArealUnsolvedRow>()?,
         arrays(&areal::areal_fields_schema()),
+        table::<feedback::ContactRow>()?,
+        table::<feedback::UnsolvedRow>()?,
         table::<micro::SampleRow>()?,
         table::<micro::LawRow>()?,
         table::<hybrid::HybridRow>()?,
@@ -67,6 +69,7 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<multilevel::AverageRow>()?,
         table::<multilevel::PairRow>()?,
         table::<tables::TotalRow>()?,
+        table::<tables::EffectRow>()?,
         table::<tables::FrictionRow>()?,
         table::<tables::BudgetRow>()?,
         table::<tables::MethodRow>()?,

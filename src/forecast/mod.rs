@@ -251,6 +251,7 @@ fn require_attainable(
 fn shortened(recipe: &Recipe) -> Recipe {
     let mut trial = recipe.clone();
     (trial.micro, trial.hybrid, trial.fem, trial.multilevel) = (None, None, None, None);
+    trial.feedback = None;
     (trial.tables.published, trial.tables.theories) = (Vec::new(), Vec::new());
     let averaged = trial.bem.as_ref().is_some_and(|bem| bem.average_tolerance.is_some());
     if let Some(realise) = &mut trial.realise {

@@ -6,7 +6,7 @@ use crate::recipe::Recipe;
 use crate::rubber::{FiniteStrainRubber, RubberData, RubberModel};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Job, Planned, Request, Stage, StageError, bem, fem, ingest, micro, multilevel, sinusoid, tables,
+    Job, Planned, Request, Stage, StageError, bem, feedback, fem, ingest, micro, multilevel, sinusoid, tables,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -135,6 +135,10 @@ fn request<'a>(
             ];
             if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
                 check_finite_strain(&material.rubber, &chain.bem.rubber).map_err(of(stage))?;
+            }
+            if let Some(section) = chain.feedback {
+                feedback::require_laws(section, &material, &chain.bem.rubber)
+                    .map_err(of(feedback::STAGE))?;
             }
             material
         }

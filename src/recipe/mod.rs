@@ -25,6 +25,7 @@ use crate::stages::{
     areal::Areal,
     bem::Bem,
     characterise::Characterise,
+    feedback::Feedback,
     fem::Fem,
     hybrid::Hybrid,
     ingest::Ingest,
@@ -72,6 +73,9 @@ pub struct Recipe {
     /// Sliding contact of areal surfaces, where maps are kept or isotropic surfaces are made.
     #[serde(default, skip_serializing_if = "is_default")]
     pub areal: Areal,
+    /// Contacts with their own heat and strain, beside those of `bem`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub feedback: Option<Feedback>,
     /// The steepest waves at finite deformation; with it, friction is corrected by them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub micro: Option<Micro>,
@@ -247,6 +251,7 @@ impl Recipe {
             ("realise", self.realise.is_some()),
             ("bem", self.bem.is_some()),
             ("areal", self.areal != Areal::default()),
+            ("feedback", self.feedback.is_some()),
             ("micro", self.micro.is_some()),
             ("hybrid", self.hybrid.is_some()),
             ("fem", self.fem.is_some()),
@@ -277,6 +282,7 @@ impl Recipe {
             realise: self.realise.as_ref().ok_or(missing("realise"))?,
             bem: self.bem.as_ref().ok_or(missing("bem"))?,
             areal: &self.areal,
+            feedback: self.feedback.as_ref(),
             micro: self.micro.as_ref(),
             hybrid: self.hybrid.unwrap_or_default(),
             fem: self.fem.as_ref(),
@@ -338,7 +344,8 @@ impl Chain<'_> {
         for (key, given) in finite {
             require(has_lines || !given, key, "a section", wanted)?;
         }
-        Ok(())
+        let wanted = "left out where no profile is made: heat and softening are for profiles";
+        require(has_lines || self.feedback.is_none(), "feedback", "a section", wanted)
     }
 
     fn check(&self) -> Result<(), InvalidRecipe> {
@@ -356,6 +363,10 @@ impl Chain<'_> {
         self.adhesion.map_or(Ok(()), |adhesion| {
             adhesion.check(self.bem.temperature_c, &self.bem.speeds_mm_s)
         })?;
+        if let Some(feedback) = self.feedback {
+            let shear = self.adhesion.and_then(|adhesion| adhesion.shear_law().ok());
+            feedback.check(self.bem, shear.as_ref())?;
+        }
         let limit = self.realise.most_realisations.unwrap_or(0);
         require(
             limit == 0 || self.bem.average_tolerance.is_some(),

@@ -5,6 +5,7 @@ use super::approximate::Approximate;
 use super::areal::Areal;
 use super::bem::Bem;
 use super::characterise::Characterise;
+use super::feedback::Feedback;
 use super::fem::Fem;
 use super::hybrid::Hybrid;
 use super::ingest::{Ingest, ScanFile};
@@ -58,6 +59,8 @@ pub struct Chain<'a> {
     pub bem: &'a Bem,
     /// Section `[areal]`.
     pub areal: &'a Areal,
+    /// Section `[feedback]`, if contacts are to be solved with their own heat or strain.
+    pub feedback: Option<&'a Feedback>,
     /// Section `[micro]`, if friction is to be corrected.
     pub micro: Option<&'a Micro>,
     /// Section `[hybrid]`.

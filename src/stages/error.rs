@@ -307,6 +307,30 @@ pub enum StageError {
         /// That of the first one.
         reason: String,
     },
+    /// Not one contact with its own heat or strain.
+    #[error("no contact has a solution with its own heat or strain; the first: {reason}")]
+    NoFeedback {
+        /// Which one, and why.
+        reason: String,
+    },
+    /// A rubber without the law that the heat of a contact needs.
+    #[error(
+        "{}: [feedback.heat] needs a rubber whose shift with temperature is known: give the file a section [temperature] \
+         (`asperity rubber fit` writes it from sweeps at several temperatures), or leave [feedback.heat] out", path.display()
+    )]
+    NoTemperatureLaw {
+        /// The file of the rubber.
+        path: PathBuf,
+    },
+    /// A rubber without the law that the softening by strain needs.
+    #[error(
+        "{}: feedback.strain needs a rubber whose softening with strain is known: give the file a section [payne] \
+         (`asperity rubber payne` makes it from strain sweeps), or set feedback.strain = false", path.display()
+    )]
+    NoStrainLaw {
+        /// The file of the rubber.
+        path: PathBuf,
+    },
     /// A contact of the microscale, or of the macro surface under its law.
     #[error("microscale of {owners}, {speed_mm_s} mm/s: {source}")]
     Microscale {
@@ -400,10 +424,14 @@ impl HasKind for StageError {
             | Self::NoWaves { .. }
             | Self::RubberAtFiniteDeformation { .. }
             | Self::NoRelaxationTimes { .. }
+            | Self::NoTemperatureLaw { .. }
+            | Self::NoStrainLaw { .. }
             | Self::NoMacroscale { .. }
             | Self::NoRelaxation { .. }
             | Self::Published { .. } => ErrorKind::Input,
-            Self::NoMicroscale { .. } | Self::TooFewRealisations { .. } => ErrorKind::Failure,
+            Self::NoMicroscale { .. }
+            | Self::NoFeedback { .. }
+            | Self::TooFewRealisations { .. } => ErrorKind::Failure,
             Self::Interrupted => ErrorKind::Interrupted,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::areal::ArealCurveRow;
 use super::bem::{CurveRow, Given};
+use super::feedback::ContactRow;
 use super::fem::FemCurveRow;
 use super::hybrid::HybridRow;
 use super::realise::{Surface, SurfaceKind};
@@ -106,6 +107,19 @@ impl From<&ArealCurveRow> for FrictionAt {
             discretisation_error: row.discretisation_error,
             relative_area_error: row.relative_area_error,
             ..Self::without_errors(curve, row.given, condition, row.friction_coefficient)
+        }
+    }
+}
+
+impl From<&ContactRow> for FrictionAt {
+    fn from(row: &ContactRow) -> Self {
+        let ContactRow { kind, realisation, speed_mm_s, .. } = *row;
+        let curve = CurveId { kind, realisation, speed_mm_s };
+        let condition = [row.contact_area_fraction, row.pressure_mpa];
+        Self {
+            discretisation_error: row.discretisation_error,
+            relative_area_error: row.relative_area_error,
+            ..Self::without_errors(curve, Given::Pressure, condition, row.friction_coefficient)
         }
     }
 }

@@ -8,6 +8,7 @@
 //! | [`realise`] | windows, maps, amplitudes | surfaces that stand for the road, as waves or heights |
 //! | [`bem`] | waves, rubber | solved contacts, friction over area |
 //! | [`areal`] | areal surfaces, rubber | solved contacts of areal surfaces, friction over area |
+//! | [`feedback`] | waves, rubber | contacts whose moduli follow from their own heat and strain |
 //! | [`micro`] | waves, friction over area, rubber | the steepest waves under both models, their local law |
 //! | [`hybrid`] | waves, friction over area, microscale | friction over area, corrected |
 //! | [`fem`] | waves, rubber | friction over area with all waves at finite deformation |
@@ -20,6 +21,7 @@ pub mod bem;
 pub mod characterise;
 pub mod contract;
 mod error;
+pub mod feedback;
 pub mod fem;
 pub(crate) mod friction;
 pub mod hybrid;
@@ -44,13 +46,14 @@ pub struct Stage(pub &'static Contract);
 
 impl Stage {
     /// All stages in the order of the data, the study of one sine last.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         ingest::STAGE,
         characterise::STAGE,
         approximate::STAGE,
         realise::STAGE,
         bem::STAGE,
         areal::STAGE,
+        feedback::STAGE,
         micro::STAGE,
         hybrid::STAGE,
         fem::STAGE,

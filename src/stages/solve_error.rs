@@ -3,6 +3,7 @@
 use super::StageError;
 use crate::artifact::ArtifactError;
 use crate::contact::ContactError;
+use crate::contact::effective::EffectiveError;
 use crate::error_kind::{ErrorKind, HasKind};
 
 /// Why a single solve has no result.
@@ -11,6 +12,9 @@ pub enum SolveError {
     /// The contact.
     #[error(transparent)]
     Contact(#[from] ContactError),
+    /// A contact with its own heat or strain.
+    #[error(transparent)]
+    Effective(#[from] EffectiveError),
     /// The finite-deformation contact.
     #[error(transparent)]
     FiniteDeformation(#[from] crate::fem::error::FemError),
@@ -52,6 +56,7 @@ impl HasKind for SolveError {
     fn kind(&self) -> ErrorKind {
         match self {
             Self::Contact(source) => source.kind(),
+            Self::Effective(source) => source.kind(),
             Self::FiniteDeformation(source) => source.kind(),
             Self::SoftContact(source) => source.kind(),
             Self::Law(source) => source.kind(),
@@ -68,6 +73,7 @@ impl SolveError {
     pub fn is_no_solution(&self) -> bool {
         match self {
             Self::Contact(error) => error.is_no_solution(),
+            Self::Effective(error) => error.is_no_solution(),
             Self::FiniteDeformation(error) => error.is_no_solution(),
             Self::SoftContact(error) => {
                 matches!(error, crate::multiscale::SoftContactError::NotConverged { .. })

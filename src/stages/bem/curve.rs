@@ -4,7 +4,8 @@ use super::{Bem, Given, SolveRow};
 use crate::artifact::{ArrayDataset, ArtifactError, Attribute, Digest, SolveStore};
 use crate::contact::curve::{CurveError, friction_curve};
 use crate::contact::refine::{
-    GridError, HALF_SPACE, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refinement, Watched, on_grid,
+    GridError, HALF_SPACE, LEAST_CONTACT_POINTS, OnGrid, RefineError, Refined, Refinement, Watched,
+    on_grid,
 };
 use crate::contact::sliding::POINTS_RANGE;
 use crate::contact::{ContactError, ContactSolution, CurvePoint, CurveValue, SlidingContact};
@@ -15,6 +16,7 @@ use crate::stages::kept::{self, Kept};
 use crate::stages::realise::Surface;
 use crate::surface::wave;
 use crate::units::Units;
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -30,18 +32,26 @@ const FIRST_POINTS_PER_WAVE: u32 = 8;
 const MOST_POINTS: usize = 1 << 22;
 /// The grid may be refined this many times for small contacts.
 const MOST_REFINEMENTS: u32 = 4;
+/// Coarser grids that tell the error of one, each of half the points.
+const MOST_HALVINGS: u32 = 3;
 
 /// Solves one surface at one speed and keeps what it solved.
-pub(super) struct Curve<'a> {
+pub(crate) struct Curve<'a> {
     grids: Grids<'a>,
     kept: Kept<'a>,
+    rule: GridRule,
+    solves: Vec<SolveRow>,
+}
+
+/// How fine the grids of the contacts of a surface are.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct GridRule {
     fewest_contact_points: f64,
     grid_tolerance: Option<f64>,
     /// Points of the one grid without a tolerance.
     base_points: usize,
     /// Points of the coarsest grid with one.
     first_points: usize,
-    solves: Vec<SolveRow>,
 }
 
 /// The contact of one surface at one speed on the grids that it is solved on.
@@ -79,10 +89,7 @@ impl<'a> Curve<'a> {
         Ok(Self {
             grids: Grids { rubber, surface, speed_mm_s, period, interrupted, contacts },
             kept: Kept::open(store, problem(rubber, surface, speed_mm_s), interrupted)?,
-            fewest_contact_points: f64::from(parameters.fewest_contact_points),
-            grid_tolerance: parameters.grid_tolerance,
-            base_points: base_points(parameters, surface),
-            first_points: points(surface, FIRST_POINTS_PER_WAVE),
+            rule: GridRule::new(parameters, surface),
             solves: Vec::new(),
         })
     }
@@ -93,7 +100,7 @@ impl<'a> Curve<'a> {
     }
 
     /// Friction at the wanted areas, then at the wanted pressures, and the fields where they are wanted.
-    pub fn compute(&mut self, parameters: &Bem) -> Result<Computed, CurveError<SolveError>> {
+    pub(super) fn compute(&mut self, parameters: &Bem) -> Result<Computed, CurveError<SolveError>> {
         let mut at_pressures = Vec::with_capacity(parameters.pressures_mpa.len());
         for pressure_mpa in &parameters.pressures_mpa {
             let point = self.point(pressure_mpa.mpa_to_pa()).map_err(CurveError::Solve)?;
@@ -102,8 +109,8 @@ impl<'a> Curve<'a> {
         let Some(&smallest) = parameters.area_fractions.first() else {
             return Ok((at_pressures, Vec::new()));
         };
-        let finest = self.base_points << MOST_REFINEMENTS;
-        if self.grid_tolerance.is_none() && smallest * (finest as f64) < LEAST_CONTACT_POINTS {
+        let finest = self.rule.base_points << MOST_REFINEMENTS;
+        if self.rule.grid_tolerance.is_none() && smallest * (finest as f64) < LEAST_CONTACT_POINTS {
             let unresolved = SolveError::Unresolved { area: smallest, points: finest };
             return Err(CurveError::Solve(unresolved));
         }
@@ -147,51 +154,20 @@ impl<'a> Curve<'a> {
 
     /// One pressure, on a grid that is fine enough for its contact.
     fn point(&mut self, pressure: f64) -> Result<CurvePoint, SolveError> {
-        let refined = match self.grid_tolerance {
-            Some(tolerance) => {
-                let refinement = Refinement {
-                    tolerance,
-                    watched: Watched::FrictionOverArea,
-                    orders: HALF_SPACE,
-                    first: self.first_points,
-                    most: MOST_POINTS,
-                };
-                let solve = |points| self.solve(pressure, points).map(Some);
-                refinement.run(solve, on_its_grid).map_err(|error| match error {
-                    RefineError::Solve(error) => error,
-                    unreached @ RefineError::NotReached { .. } => {
-                        SolveError::Accuracy { pressure, reason: unreached.to_string() }
-                    }
-                })?
-            }
-            None => {
-                let points = self.sufficient_points(pressure)?;
-                let least = *POINTS_RANGE.start();
-                on_grid(
-                    points,
-                    least,
-                    HALF_SPACE,
-                    |points| self.solve(pressure, points),
-                    SolveError::is_no_solution,
-                    on_its_grid,
-                )?
-            }
-        };
-        let discretisation_error = refined.error.map(|error| error.friction_coefficient);
-        Ok(self.keep(SolveRow { discretisation_error, ..refined.solution }, refined.error))
+        let (row, error) = self.contact(pressure)?;
+        Ok(self.keep(row, error))
     }
 
-    /// The usual grid, doubled while the contact has too few points.
-    fn sufficient_points(&mut self, pressure: f64) -> Result<usize, SolveError> {
-        let mut points = self.base_points;
-        for _ in 0..MOST_REFINEMENTS {
-            let row = self.solve(pressure, points)?;
-            if row.contact_area_fraction * points as f64 >= self.fewest_contact_points {
-                break;
-            }
-            points *= 2;
-        }
-        Ok(points)
+    /// The contact at a pressure in Pa on a grid that is fine enough for it, with its errors by the grid.
+    pub fn contact(
+        &mut self,
+        pressure: f64,
+    ) -> Result<(SolveRow, Option<GridError>), SolveError> {
+        let rule = self.rule;
+        let refined =
+            rule.refined(pressure, |points| self.solve(pressure, points), on_its_grid)?;
+        let discretisation_error = refined.error.map(|error| error.friction_coefficient);
+        Ok((SolveRow { discretisation_error, ..refined.solution }, refined.error))
     }
 
     fn keep(&mut self, row: SolveRow, error: Option<GridError>) -> CurvePoint {
@@ -217,7 +193,7 @@ impl<'a> Curve<'a> {
     }
 
     fn field(&mut self, value: &CurveValue) -> Result<FieldSolution, SolveError> {
-        let points = self.base_points;
+        let points = self.rule.base_points;
         let grids = &mut self.grids;
         let solution = grids.contact(points)?.solve(value.mean_pressure)?;
         let area_fraction = value.contact_area_fraction;
@@ -228,6 +204,71 @@ impl<'a> Curve<'a> {
             grids.speed_mm_s
         );
         Ok(FieldSolution { group, area_fraction, spacing: grids.period / points as f64, solution })
+    }
+}
+
+impl GridRule {
+    /// That of the stage for a surface.
+    pub fn new(parameters: &Bem, surface: &Surface) -> Self {
+        Self {
+            fewest_contact_points: f64::from(parameters.fewest_contact_points),
+            grid_tolerance: parameters.grid_tolerance,
+            base_points: base_points(parameters, surface),
+            first_points: points(surface, FIRST_POINTS_PER_WAVE),
+        }
+    }
+
+    /// Points of the coarsest grid that is solved.
+    pub fn coarsest_points(&self) -> usize {
+        match self.grid_tolerance {
+            Some(_) => self.first_points,
+            None => (self.base_points >> MOST_HALVINGS).max(*POINTS_RANGE.start()),
+        }
+    }
+
+    /// A contact at a pressure in Pa on a grid that is fine enough for it: doubled to the accuracy that is asked for, or, without
+    /// one, the usual grid, doubled while the contact has too few points, and judged by three coarser ones.
+    pub fn refined<S>(
+        &self,
+        pressure: f64,
+        mut solve: impl FnMut(usize) -> Result<S, SolveError>,
+        view: impl Fn(&S) -> OnGrid,
+    ) -> Result<Refined<S>, SolveError> {
+        let Some(tolerance) = self.grid_tolerance else {
+            let points = self.sufficient_points(&mut solve, &view)?;
+            let least = *POINTS_RANGE.start();
+            return on_grid(points, least, HALF_SPACE, solve, SolveError::is_no_solution, view);
+        };
+        let refinement = Refinement {
+            tolerance,
+            watched: Watched::FrictionOverArea,
+            orders: HALF_SPACE,
+            first: self.first_points,
+            most: MOST_POINTS,
+        };
+        refinement.run(|points| solve(points).map(Some), view).map_err(|error| match error {
+            RefineError::Solve(error) => error,
+            unreached @ RefineError::NotReached { .. } => {
+                SolveError::Accuracy { pressure, reason: unreached.to_string() }
+            }
+        })
+    }
+
+    /// The usual grid, doubled while the contact has too few points.
+    fn sufficient_points<S>(
+        &self,
+        solve: &mut impl FnMut(usize) -> Result<S, SolveError>,
+        view: &impl Fn(&S) -> OnGrid,
+    ) -> Result<usize, SolveError> {
+        let mut points = self.base_points;
+        for _ in 0..MOST_REFINEMENTS {
+            let found = view(&solve(points)?);
+            if found.contact_area_fraction * points as f64 >= self.fewest_contact_points {
+                break;
+            }
+            points *= 2;
+        }
+        Ok(points)
     }
 }
 

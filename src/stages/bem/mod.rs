@@ -35,13 +35,14 @@ use crate::rubber::{FrequencyRange, RubberData, RubberModel, read_rubber_at};
 use crate::units::Units;
 pub(crate) use attainable::require_attainable;
 use curve::FieldSolution;
-pub(crate) use curve::solved;
+pub(crate) use curve::{Curve, GridRule, solved};
 pub(crate) use ensemble::FIRST_REALISATIONS;
 use ensemble::{CurveResult, Ensemble};
 pub use rows::{
     CURVES, CurveRow, FIELDS, REALISATIONS, RealisationsRow, SOLVES, SolveRow, fields_schema,
     schemas,
 };
+pub(crate) use speeds::{Speeds, deserialize_some as some_speeds};
 pub use scans::{SCAN_ERRORS, ScanErrorRow, Scans};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -83,7 +84,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     )
 }
 
-const SPEEDS: &str = "one speed or more from 1e-9 to 1e9 mm/s, without repeats";
+pub(crate) const SPEEDS: &str = "one speed or more from 1e-9 to 1e9 mm/s, without repeats";
 
 /// Section `[bem]` of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -166,7 +167,7 @@ fn default_contact_points() -> u32 {
 
 /// Speeds that a recipe may ask for: from below any creep to above any vehicle, and well inside the
 /// range of floating-point numbers.
-const SPEEDS_MM_S: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+pub(crate) const SPEEDS_MM_S: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 impl Bem {
     pub(crate) fn check(&self) -> Result<(), InvalidRecipe> {
@@ -211,7 +212,7 @@ impl Bem {
     }
 }
 
-fn no_repeats(values: &[f64]) -> bool {
+pub(crate) fn no_repeats(values: &[f64]) -> bool {
     values.iter().enumerate().all(|(i, a)| values[..i].iter().all(|b| a != b))
 }
 

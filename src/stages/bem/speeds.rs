@@ -52,6 +52,13 @@ fn rounded(speed: f64) -> f64 {
     format!("{:.digits$}", (speed / unit).round() * unit).parse().unwrap_or(speed)
 }
 
+/// As [`deserialize`], of a key that may be left out.
+pub(crate) fn deserialize_some<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Vec<f64>>, D::Error> {
+    deserialize(deserializer).map(Some)
+}
+
 /// Reads a list of speeds, or a range of them, as a list.
 pub(super) fn deserialize<'de, D: Deserializer<'de>>(
     deserializer: D,
@@ -92,7 +99,7 @@ impl<'de> Visitor<'de> for Written {
 }
 
 /// How speeds are written, for the schema of recipes.
-pub(super) struct Speeds;
+pub(crate) struct Speeds;
 
 impl JsonSchema for Speeds {
     fn schema_name() -> Cow<'static, str> {

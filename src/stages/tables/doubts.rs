@@ -83,6 +83,21 @@ pub(super) fn steep_maps(surfaces: &[ArealRow]) -> Option<String> {
     })
 }
 
+/// Speed in mm/s above which the heat of the contact changes friction (docs/heat.md).
+const WARM_MM_S: f64 = 100.0;
+
+/// A warning of friction at speeds at which a rubber with loss is not as cold as it is taken here.
+pub(super) fn isothermal(rows: &[FrictionRow], rubber: &RubberModel) -> Option<String> {
+    let fastest = rows.iter().map(|row| row.speed_mm_s).fold(0.0, f64::max);
+    let elastic = matches!(rubber, RubberModel::Maxwell(rubber) if rubber.branches.is_empty());
+    (fastest > WARM_MM_S && !elastic).then(|| {
+        format!(
+            "the tables are isothermal also above 0.1 m/s (here up to {fastest} mm/s), where the heat of the contact changes \
+             friction: [feedback.heat] solves profiles with it"
+        )
+    })
+}
+
 /// Root mean square slope of what is left to the half-space, in the mean over the surfaces.
 fn slope_left(surfaces: &[Surface], parting: Parting) -> f64 {
     let slopes = surfaces.iter().map(|surface| {

@@ -8,6 +8,7 @@
 //! | `basis` | what the averages rest on: windows, the shortest wavelength, and the errors by both |
 //! | `budget` | what the error of every average is made of |
 //! | `doubts` | what a reader of the averages should be told |
+//! | `effects` | friction with the heat and the strain of the contact beside that without |
 //! | `methods` | friction of the surfaces that stand for the road beside that of its measured profiles |
 //! | `model_error` | how far the hybrid is from what it approximates |
 //! | `models` | how far the models of a run are apart |
@@ -23,6 +24,7 @@ mod average;
 mod basis;
 mod budget;
 mod doubts;
+mod effects;
 mod methods;
 mod model_error;
 mod models;
@@ -36,6 +38,8 @@ use super::approximate::WAVES;
 use super::bem::CURVES;
 use super::characterise::{AREAL_PARAMETERS, RELIABLE_KEY, length_in};
 use super::contract::{Context, Contract, Inputs, Planned, Request};
+pub use super::feedback::Effect;
+use super::feedback::{CONTACTS, UNSOLVED};
 use super::friction::FrictionAt;
 use super::hybrid::Hybrid;
 use super::realise::{AREAL_SURFACES, read_surfaces};
@@ -51,6 +55,7 @@ use basis::Basis;
 use budget::budget;
 pub use budget::{BUDGET, BudgetRow, Part};
 use doubts::doubts;
+pub use effects::{EFFECTS, EffectRow};
 pub use methods::{METHODS, MethodRow};
 use models::comparisons;
 pub use models::{MODELS, ModelRow};
@@ -91,6 +96,7 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         }),
         fem: chain.fem.is_some(),
         multilevel: chain.multilevel.is_some(),
+        effects: chain.feedback.map(|feedback| feedback.heat.is_some()),
         scans: match (chain.ingest, chain.has_lines()) {
             (None, _) => Scans::None,
             (Some(_), true) => Scans::Lines,
@@ -134,6 +140,8 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
         .reading_if(chain.ingest.is_some(), super::ingest::WINDOWS)
         .reading_if(models.angle_deg.is_some(), super::areal::AREAL_CURVES)
         .reading_if(models.angle_deg.is_some(), super::realise::AREAL_SURFACES)
+        .reading_if(models.effects.is_some(), CONTACTS)
+        .reading_if(models.effects.is_some(), UNSOLVED)
         .reading_if(!tables.published_corrections.is_empty(), super::micro::SAMPLES);
     Some(planned.with_inputs(request.published.clone()))
 }
@@ -181,6 +189,8 @@ pub struct Models {
     pub fem: bool,
     /// The recipe has a section `[multilevel]`.
     pub multilevel: bool,
+    /// Whether the contacts of the section `[feedback]` are heated, if the recipe has one.
+    pub effects: Option<bool>,
     /// What the recipe has measured of the road.
     pub scans: Scans,
     /// The first direction of sliding over areal surfaces, if there are any.
@@ -283,17 +293,21 @@ pub fn run(
     basis.complete(&mut rows);
     warnings.extend(doubts(&rows, &surfaces, rubber, models.threshold()));
     warnings.extend(doubts::steep_maps(&areal));
+    warnings.extend(doubts::isothermal(&rows, rubber).filter(|_| models.effects != Some(true)));
     let reliable = length_in(&metadata, RELIABLE_KEY)?;
     rows.iter_mut().for_each(|row| row.shortest_reliable_wavelength_mm = reliable);
     warnings
         .extend(parameters.tolerance.map_or_else(Vec::new, |tolerance| missed(tolerance, &rows)));
     context.pending.write_rows(FRICTION, &rows)?;
     context.pending.write_rows(BUDGET, &budget(&rows))?;
-    if let Some((section, temperature_c)) = adhesion {
-        let shear = Shear::new(section, temperature_c)?;
+    let shear = adhesion.map(|(section, celsius)| Shear::new(section, celsius)).transpose()?;
+    if let Some(shear) = &shear {
         let totals = shear.totals(&values, &rows, &basis)?;
         warnings.extend(shear.warnings(&totals));
         context.pending.write_rows(TOTAL, &totals)?;
+    }
+    if models.effects.is_some() {
+        context.pending.write_rows(EFFECTS, &effects::effects(run, shear.as_ref(), &basis)?)?;
     }
     let methods = methods::compared(&rows);
     warnings.extend(models.unlike_lines(&methods));

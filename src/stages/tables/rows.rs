@@ -1,6 +1,6 @@
 //! The tables of the stage.
 
-use super::{BUDGET, COMPARISON, CORRECTIONS, METHODS, MODELS, THEORIES, TOTAL};
+use super::{BUDGET, COMPARISON, CORRECTIONS, EFFECTS, METHODS, MODELS, THEORIES, TOTAL};
 use crate::artifact::{Row, SchemaVersion, Table};
 use crate::stages::bem::Given;
 use crate::stages::friction::Condition;
@@ -149,6 +149,7 @@ pub fn schemas() -> Vec<SchemaVersion> {
         BUDGET.schema(),
         COMPARISON.schema(),
         CORRECTIONS.schema(),
+        EFFECTS.schema(),
         METHODS.schema(),
         MODELS.schema(),
         THEORIES.schema(),

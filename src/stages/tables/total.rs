@@ -114,7 +114,7 @@ impl<'a> Shear<'a> {
     }
 
     /// A value with the friction of its contact area.
-    fn sum(&self, value: &FrictionAt) -> Result<FrictionAt, ShearError> {
+    pub fn sum(&self, value: &FrictionAt) -> Result<FrictionAt, ShearError> {
         let ratio = value.contact_area_fraction / value.pressure_mpa;
         let adhesive = self.stress_mpa(value.curve.speed_mm_s)? * ratio;
         let by_area = value.relative_area_error.map(|error| error * adhesive);

@@ -3,6 +3,7 @@
 use crate::contact::ContactError;
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::heat::HeatError;
+use crate::rubber::RubberError;
 
 /// Why there is no contact with effective moduli to report.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -59,6 +60,20 @@ pub enum EffectiveError {
         /// What was wanted.
         tolerance: f64,
     },
+}
+
+impl EffectiveError {
+    /// Whether the solver ran and found no contact whose moduli are known and agree with it; other errors are wrong input or an
+    /// interrupt.
+    pub fn is_no_solution(&self) -> bool {
+        match self {
+            // The rubber without factors is known at all its frequencies, else there is no contact at all.
+            Self::Contact(ContactError::Rubber(RubberError::NotMeasured { .. })) => true,
+            Self::Contact(error) => error.is_no_solution(),
+            Self::Heat(error) => error.kind() == ErrorKind::Failure,
+            Self::Temperature { .. } | Self::Strain { .. } | Self::NotConverged { .. } => true,
+        }
+    }
 }
 
 impl HasKind for EffectiveError {

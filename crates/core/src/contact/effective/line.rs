@@ -6,7 +6,7 @@ use crate::contact::half_space::wave_moduli;
 use crate::contact::{ContactError, ContactSolution, SlidingContact};
 use crate::heat::{HeatSource, LineLoad, Temperatures};
 use crate::numerics::anderson::Anderson;
-use crate::rubber::RubberError;
+use crate::rubber::{RubberError, Viscoelastic};
 use std::f64::consts::TAU;
 
 /// Times that a temperature or a strain beyond the law is halved, on the way to the fixed point.
@@ -68,6 +68,25 @@ pub struct Feedback {
     pub change: [f64; 2],
 }
 
+/// A contact with effective moduli alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectiveContact {
+    /// The contact.
+    pub solution: ContactSolution,
+    /// Effective moduli, over the wavenumber.
+    pub factors: WaveFactors,
+    /// Temperature rise in K that each wave meets; empty without heat.
+    pub rise: Vec<f64>,
+    /// Strain that each wave meets; empty without a law of it.
+    pub strain: Vec<f64>,
+    /// Heat of the contact.
+    pub heat: Option<HeatReport>,
+    /// Contacts solved.
+    pub steps: usize,
+    /// Change in the last step of factors of moduli, and of friction or area.
+    pub change: [f64; 2],
+}
+
 /// One evaluation of the map whose fixed point is sought.
 struct Step {
     solution: ContactSolution,
@@ -86,7 +105,7 @@ impl<'a> FeedbackContact<'a> {
     /// As [`SlidingContact::new`], and [`ContactError::OutOfRange`] or [`crate::heat::HeatError::OutOfRange`] for a setting out of range.
     pub fn new(setup: FeedbackSetup<'a>) -> Result<Self, EffectiveError> {
         setup.check()?;
-        let plain = SlidingContact::new(setup.rubber, setup.speed, setup.period, setup.heights)?;
+        let plain = sliding(setup.rubber, &setup)?;
         let waves = (setup.heights.len() - 1) / 2;
         let wavenumber = (1..=waves).map(|k| TAU * k as f64 / setup.period).collect();
         Ok(Self { setup, wavenumber, plain })
@@ -99,8 +118,58 @@ impl<'a> FeedbackContact<'a> {
     /// more strained, than the laws know; what [`SlidingContact::solve`], [`HeatSource::new`] and [`Temperatures::new`] refuse.
     pub fn solve(&mut self, mean_pressure: f64) -> Result<Feedback, EffectiveError> {
         let without = self.plain.solve(mean_pressure)?;
-        let mut factors = WaveFactors::none(self.wavenumber.clone());
-        let mut step = self.evaluate(without.clone(), &factors)?;
+        let found = self.fixed_point(mean_pressure, without.clone(), self.no_factors())?;
+        let EffectiveContact { solution: with, factors, rise, strain, heat, steps, change } = found;
+        Ok(Feedback { without, with, factors, rise, strain, heat, steps, change })
+    }
+
+    /// The contact with feedback alone, as in [`Self::solve`], found from factors near its own: those on a coarser grid, at
+    /// another speed or pressure. A fixed point is held to the same tolerance wherever it is sought from, and near it takes fewer
+    /// contacts. Where there are several, the one that is found may depend on the start.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_from(
+        &mut self,
+        mean_pressure: f64,
+        start: &WaveFactors,
+    ) -> Result<EffectiveContact, EffectiveError> {
+        let factors = start.at_waves(self.wavenumber.clone());
+        let solution = self.sliding(&factors)?.solve(mean_pressure)?;
+        self.fixed_point(mean_pressure, solution, factors)
+    }
+
+    /// The same from the contact without feedback.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn solve_effective(
+        &mut self,
+        mean_pressure: f64,
+    ) -> Result<EffectiveContact, EffectiveError> {
+        let without = self.plain.solve(mean_pressure)?;
+        self.fixed_point(mean_pressure, without, self.no_factors())
+    }
+
+    fn no_factors(&self) -> WaveFactors {
+        WaveFactors::none(self.wavenumber.clone())
+    }
+
+    /// The contact whose moduli have some factors.
+    fn sliding(&self, factors: &WaveFactors) -> Result<SlidingContact, ContactError> {
+        let setup = &self.setup;
+        let rubber = EffectiveRubber { rubber: setup.rubber, factors, speed: setup.speed };
+        sliding(&rubber, setup)
+    }
+
+    /// The fixed point, from the contact `solution` with some `factors`.
+    fn fixed_point(
+        &self,
+        mean_pressure: f64,
+        solution: ContactSolution,
+        mut factors: WaveFactors,
+    ) -> Result<EffectiveContact, EffectiveError> {
+        let mut step = self.evaluate(solution, &factors)?;
         let mut anderson = Anderson::new(self.weights());
         let mut change = [self.distance(&factors, &step.wanted), 0.0];
         let mut steps = 1;
@@ -128,7 +197,7 @@ impl<'a> FeedbackContact<'a> {
         }
         let heat = step.thermal.as_ref().map(|(source, field)| self.report(source, field));
         let Step { solution, rise, strain, .. } = step;
-        Ok(Feedback { without, with: solution, factors, rise, strain, heat, steps, change })
+        Ok(EffectiveContact { solution, factors, rise, strain, heat, steps, change })
     }
 
     /// The contact with the `next` factors, or with some between them and the last ones where the rubber is not known at the
@@ -141,11 +210,8 @@ impl<'a> FeedbackContact<'a> {
         mut next: WaveFactors,
         near: bool,
     ) -> Result<(ContactSolution, WaveFactors), EffectiveError> {
-        let setup = &self.setup;
         for retreat in 0.. {
-            let rubber =
-                EffectiveRubber { rubber: setup.rubber, factors: &next, speed: setup.speed };
-            match SlidingContact::new(&rubber, setup.speed, setup.period, setup.heights) {
+            match self.sliding(&next) {
                 Ok(mut contact) => {
                     // From a contact that is not near, the coarser grids are faster.
                     let solution = match near {
@@ -278,6 +344,20 @@ impl<'a> FeedbackContact<'a> {
     fn distance(&self, a: &WaveFactors, b: &WaveFactors) -> f64 {
         let pairs = self.packed(a).into_iter().zip(self.packed(b));
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// The contact of a set-up with another rubber, or its own.
+fn sliding(
+    rubber: &dyn Viscoelastic,
+    setup: &FeedbackSetup,
+) -> Result<SlidingContact, ContactError> {
+    let FeedbackSetup { speed, period, heights, .. } = *setup;
+    match setup.interrupt {
+        None => SlidingContact::new(rubber, speed, period, heights),
+        Some(interrupt) => {
+            SlidingContact::new_interruptible(rubber, speed, period, heights, interrupt)
+        }
     }
 }
 

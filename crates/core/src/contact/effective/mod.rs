@@ -34,7 +34,7 @@ mod tests;
 
 pub use error::EffectiveError;
 pub use laws::{StrainLaw, TemperatureLaw};
-pub use line::{Feedback, FeedbackContact, HeatReport};
+pub use line::{EffectiveContact, Feedback, FeedbackContact, HeatReport};
 pub use rubber::{EffectiveRubber, WaveFactors};
 pub use setup::{FeedbackSetup, HeatFeedback};
 pub use strain::strain_of_waves;

@@ -41,14 +41,32 @@ impl WaveFactors {
         }
     }
 
-    fn at(&self, wavenumber: f64) -> Factors {
+    /// The same factors stated at other waves of ascending wavenumber in rad/m; at least one.
+    #[must_use]
+    pub fn at_waves(&self, wavenumber: Vec<f64>) -> Self {
+        let of = |values: &[f64]| wavenumber.iter().map(|q| self.between(*q, values)).collect();
+        Self {
+            ln_shift: of(&self.ln_shift),
+            ln_vertical: of(&self.ln_vertical),
+            storage: of(&self.storage),
+            loss: of(&self.loss),
+            wavenumber,
+        }
+    }
+
+    /// One of the lists at a wavenumber in rad/m.
+    fn between(&self, wavenumber: f64, values: &[f64]) -> f64 {
         let after = self.wavenumber.partition_point(|q| *q < wavenumber);
         let last = self.wavenumber.len() - 1;
         let (left, right) = (after.saturating_sub(1).min(last), after.min(last));
         let (from, to) = (self.wavenumber[left], self.wavenumber[right]);
         let share = if left == right { 0.0 } else { (wavenumber / from).ln() / (to / from).ln() };
         // A difference of equal values is zero, so that factors of one stay what they are.
-        let between = |x: &[f64]| x[left] + share * (x[right] - x[left]);
+        values[left] + share * (values[right] - values[left])
+    }
+
+    fn at(&self, wavenumber: f64) -> Factors {
+        let between = |values: &[f64]| self.between(wavenumber, values);
         let vertical = between(&self.ln_vertical).exp();
         Factors {
             shift: between(&self.ln_shift).exp(),

@@ -3,6 +3,7 @@
 use super::{EffectiveError, StrainLaw, TemperatureLaw};
 use crate::contact::ContactError;
 use crate::heat::ThermalSetting;
+use crate::numerics::Interrupt;
 use crate::rubber::{Viscoelastic, ZERO_CELSIUS};
 
 /// Heat of the contact, and how the rubber responds to it.
@@ -36,6 +37,8 @@ pub struct FeedbackSetup<'a> {
     pub tolerance: f64,
     /// Most contacts solved.
     pub most_steps: usize,
+    /// Ends a solve between two Krylov iterations, if one is given.
+    pub interrupt: Option<&'a Interrupt>,
 }
 
 /// Tolerance of the fixed point that suits all but studies of it.
@@ -55,6 +58,7 @@ impl<'a> FeedbackSetup<'a> {
             strain: None,
             tolerance: TOLERANCE,
             most_steps: MOST_STEPS,
+            interrupt: None,
         }
     }
 

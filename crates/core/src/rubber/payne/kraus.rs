@@ -4,6 +4,7 @@ use super::sweep::Ordered;
 use super::{PayneError, StrainPoint, StrainSweep};
 use crate::numerics::least_squares::{LeastSquares, Minimum, minimise};
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 
 /// Fewest strains that a fit of seven numbers to two moduli needs.
 const FEWEST: usize = 6;
@@ -22,7 +23,7 @@ const EXPONENTS: [f64; 3] = [0.4, 0.6, 1.0];
 /// rate at which contacts change. Kraus' own law has `g_inf = 1`: one loss modulus at small and large strains, so that g never
 /// is below 1. Measured loss moduli fall far below (to a quarter for tread compounds), because the network takes its own loss
 /// with it; the term of `1 - g_inf` lets it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Kraus {
     /// Critical strain ε_c, at which half of the network is broken.
     pub critical_strain: f64,

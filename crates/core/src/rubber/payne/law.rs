@@ -1,9 +1,10 @@
 //! The factors over strain at one temperature, and over temperature.
 
 use super::{Kraus, PayneError, PayneTable};
+use serde::Serialize;
 
 /// The factors over strain of one sweep.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum PayneCurve {
     /// Kraus' law.
     Kraus(Kraus),
@@ -35,7 +36,7 @@ pub struct Payne {
 }
 
 /// How a rubber softens with strain at one temperature: what a contact asks.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PayneLaw {
     near: PayneCurve,
     /// The sweep on the other side, and its weight.

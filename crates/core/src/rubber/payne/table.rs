@@ -3,6 +3,7 @@
 use super::sweep::Ordered;
 use super::{PayneError, StrainPoint, StrainSweep};
 use crate::numerics::interpolation::CubicHermite;
+use serde::Serialize;
 
 /// Below the smallest strain divided by this both factors are 1.
 const AT_REST: f64 = 3.2;
@@ -11,10 +12,13 @@ const LARGEST: f64 = 10.0;
 
 /// Factors over strain, cubic in ln ε between the points and monotone where they are; 1 at vanishing strain, constant beyond
 /// the largest strain.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PayneTable {
     rows: Vec<[f64; 3]>,
+    // Both follow from the rows.
+    #[serde(skip)]
     storage: CubicHermite,
+    #[serde(skip)]
     loss: CubicHermite,
 }
 
