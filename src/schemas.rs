@@ -4,8 +4,8 @@
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
 use crate::stages::{
-    approximate, areal, bem, characterise, feedback, fem, hybrid, ingest, micro, multilevel, realise,
-    sinusoid, tables,
+    approximate, areal, bem, characterise, feedback, fem, hybrid, ingest, micro, multilevel,
+    realise, sinusoid, tables,
 };
 use crate::sweep::SweepFrictionRow;
 use schemars::schema_for;

@@ -6,8 +6,10 @@ use crate::numerics::interpolation::CubicHermite;
 use crate::numerics::statistics::MeanEstimate;
 use crate::stages::areal::AREAL_CURVES;
 use crate::stages::bem::{CURVES, Given};
+use crate::stages::feedback::{CONTACTS, Effect};
+use crate::stages::friction::FrictionAt;
 use crate::stages::realise::{PROFILES, SurfaceKind};
-use crate::stages::tables::{FRICTION, FrictionRow, Model};
+use crate::stages::tables::{EFFECTS, FRICTION, Model};
 use std::collections::BTreeMap;
 
 /// Pressures that differ by less, relative, are the same: tables state them with all digits, people with two.
@@ -22,6 +24,8 @@ pub struct Choice {
     pub kind: Option<SurfaceKind>,
     /// Mean pressure in MPa; needed where the run has several.
     pub pressure_mpa: Option<f64>,
+    /// What the contact does to its rubber, from the tables of `[feedback]`; `None` for those without.
+    pub effect: Option<Effect>,
 }
 
 /// Friction and area of a run over the speed.
@@ -66,6 +70,55 @@ pub struct Available {
     pub kind: SurfaceKind,
     /// Mean pressure in MPa.
     pub pressure_mpa: f64,
+    /// What the contact does to its rubber; `None` for the tables without `[feedback]`.
+    pub effect: Option<Effect>,
+}
+
+/// An average of a run at a given pressure.
+#[derive(Debug, Clone)]
+struct Average {
+    model: Model,
+    kind: SurfaceKind,
+    pressure_mpa: f64,
+    effect: Option<Effect>,
+    speed_mm_s: f64,
+    shortest_wavelength_mm: f64,
+    hysteretic: f64,
+    contact_area_fraction: f64,
+    error: Option<f64>,
+}
+
+/// All averages of a run at given pressures, those of `[feedback]` behind those without.
+fn averages(run: &RunView) -> Result<Vec<Average>, ArtifactError> {
+    let friction = run.rows(FRICTION)?.into_iter().filter(|row| row.given == Given::Pressure);
+    let mut all: Vec<Average> = friction
+        .map(|row| Average {
+            model: row.model,
+            kind: row.kind,
+            pressure_mpa: row.pressure_mpa,
+            effect: None,
+            speed_mm_s: row.speed_mm_s,
+            shortest_wavelength_mm: row.shortest_wavelength_mm,
+            hysteretic: row.mean,
+            contact_area_fraction: row.contact_area_fraction,
+            error: row.error_estimate,
+        })
+        .collect();
+    if run.has(EFFECTS)? {
+        all.extend(run.rows(EFFECTS)?.into_iter().map(|row| Average {
+            model: Model::Bem,
+            kind: row.kind,
+            pressure_mpa: row.pressure_mpa,
+            effect: Some(row.effect),
+            speed_mm_s: row.speed_mm_s,
+            shortest_wavelength_mm: row.shortest_wavelength_mm,
+            hysteretic: row.hysteretic,
+            contact_area_fraction: row.contact_area_fraction,
+            // Beside [adhesion], `error_estimate` is that of the total.
+            error: row.confidence_95.zip(row.discretisation_error).map(|(a, b)| a + b),
+        }));
+    }
+    Ok(all)
 }
 
 /// Why a run has nothing to compare with.
@@ -143,8 +196,8 @@ impl Computed {
     /// # Errors
     /// [`ComputedError`], which names the options that choose between several.
     pub fn read(run: &RunView, choice: Choice) -> Result<Self, ComputedError> {
-        let rows: Vec<FrictionRow> =
-            run.rows(FRICTION)?.into_iter().filter(|row| row.given == Given::Pressure).collect();
+        let mut rows = averages(run)?;
+        rows.retain(|row| row.effect == choice.effect);
         if rows.is_empty() {
             return Err(ComputedError::NoPressure);
         }
@@ -175,9 +228,9 @@ impl Computed {
             let speeds = rows.iter().map(|row| row.speed_mm_s.ln()).collect();
             CubicHermite::monotone_parabolas(speeds, values)
         };
-        let curve = |value: fn(&FrictionRow) -> f64| over_speed(rows.iter().map(value).collect());
-        let errors: Option<Vec<f64>> = rows.iter().map(|row| row.error_estimate).collect();
-        let areas = Areas::read(run, model, first.kind)?;
+        let curve = |value: fn(&Average) -> f64| over_speed(rows.iter().map(value).collect());
+        let errors: Option<Vec<f64>> = rows.iter().map(|row| row.error).collect();
+        let areas = Areas::read(run, first)?;
         let area_errors: Option<Vec<f64>> =
             rows.iter().map(|row| areas.relative_error(row)).collect();
         Ok(Self {
@@ -186,7 +239,7 @@ impl Computed {
             pressure_mpa: first.pressure_mpa,
             shortest_wavelength_mm: first.shortest_wavelength_mm,
             speeds_mm_s: [first.speed_mm_s, last.speed_mm_s],
-            friction: curve(|row| row.mean),
+            friction: curve(|row| row.hysteretic),
             ln_area: curve(|row| row.contact_area_fraction.ln()),
             error: errors.map(over_speed),
             relative_area_error: area_errors.map(over_speed),
@@ -199,9 +252,9 @@ impl Computed {
     /// [`ComputedError::Artifact`].
     pub fn available(run: &RunView) -> Result<Vec<Available>, ComputedError> {
         let mut found: Vec<Available> = Vec::new();
-        for row in run.rows(FRICTION)?.iter().filter(|row| row.given == Given::Pressure) {
-            let FrictionRow { model, kind, pressure_mpa, .. } = *row;
-            let new = Available { model, kind, pressure_mpa };
+        for row in averages(run)? {
+            let Average { model, kind, pressure_mpa, effect, .. } = row;
+            let new = Available { model, kind, pressure_mpa, effect };
             if !found.contains(&new) {
                 found.push(new);
             }
@@ -237,67 +290,50 @@ impl Computed {
 
 /// Contact areas of every surface of one kind at given pressures.
 struct Areas {
-    /// Speed in mm/s, pressure in MPa, realisation, area, relative error by the grid.
-    values: Vec<(f64, f64, u32, f64, Option<f64>)>,
+    values: Vec<FrictionAt>,
     /// The window of every surface of one.
     window_of: BTreeMap<u32, String>,
 }
 
 impl Areas {
-    fn read(run: &RunView, model: Model, kind: SurfaceKind) -> Result<Self, ArtifactError> {
-        let mut areas = Self { values: Vec::new(), window_of: BTreeMap::new() };
-        if !matches!(model, Model::Bem | Model::Hybrid) {
-            return Ok(areas);
-        }
-        if kind.method.is_areal() {
+    /// The areas behind an average: none where the model has none of its own.
+    fn read(run: &RunView, of: &Average) -> Result<Self, ArtifactError> {
+        let mut values: Vec<FrictionAt> = if let Some(effect) = of.effect {
+            let rows = run.rows(CONTACTS)?;
+            rows.iter().filter(|row| row.effect == effect).map(FrictionAt::from).collect()
+        } else if !matches!(of.model, Model::Bem | Model::Hybrid) {
+            Vec::new()
+        } else if of.kind.method.is_areal() {
             let rows = run.rows(AREAL_CURVES)?;
-            let own = rows.iter().filter(|row| row.kind == kind && row.given == Given::Pressure);
             // One direction is that of the tables: the first.
             let first = rows.first().map(|row| row.angle_deg);
-            areas.values = own
-                .filter(|row| Some(row.angle_deg) == first)
-                .map(|row| {
-                    let area = row.contact_area_fraction;
-                    (
-                        row.speed_mm_s,
-                        row.pressure_mpa,
-                        row.realisation,
-                        area,
-                        row.relative_area_error,
-                    )
-                })
-                .collect();
-            return Ok(areas);
+            rows.iter().filter(|row| Some(row.angle_deg) == first).map(FrictionAt::from).collect()
+        } else {
+            run.rows(CURVES)?.iter().map(FrictionAt::from).collect()
+        };
+        values.retain(|value| value.curve.kind == of.kind && value.given == Given::Pressure);
+        let mut window_of = BTreeMap::new();
+        if of.kind.method.of_a_window() && !of.kind.method.is_areal() {
+            let rows = run.rows(PROFILES)?.into_iter().filter(|row| row.kind == of.kind);
+            window_of = rows.map(|row| (row.realisation, row.window)).collect();
         }
-        let rows = run.rows(CURVES)?;
-        let own = rows.iter().filter(|row| row.kind == kind && row.given == Given::Pressure);
-        areas.values = own
-            .map(|row| {
-                let area = row.contact_area_fraction;
-                (row.speed_mm_s, row.pressure_mpa, row.realisation, area, row.relative_area_error)
-            })
-            .collect();
-        if kind.method.of_a_window() {
-            let rows = run.rows(PROFILES)?.into_iter().filter(|row| row.kind == kind);
-            areas.window_of = rows.map(|row| (row.realisation, row.window)).collect();
-        }
-        Ok(areas)
+        Ok(Self { values, window_of })
     }
 
     /// The 95 % interval of the mean area and its mean error by the grid, relative. Draws of one window count once.
-    fn relative_error(&self, row: &FrictionRow) -> Option<f64> {
-        let own = self.values.iter().filter(|(speed, pressure, ..)| {
-            *speed == row.speed_mm_s && (pressure / row.pressure_mpa - 1.0).abs() < SAME_PRESSURE
+    fn relative_error(&self, row: &Average) -> Option<f64> {
+        let own = self.values.iter().filter(|value| {
+            value.curve.speed_mm_s == row.speed_mm_s
+                && (value.pressure_mpa / row.pressure_mpa - 1.0).abs() < SAME_PRESSURE
         });
         let mut by_window: BTreeMap<String, Vec<f64>> = BTreeMap::new();
         let (mut grid, mut count) = (0.0, 0.0);
-        for (.., realisation, area, error) in own {
-            let window = self.window_of.get(realisation).cloned();
-            by_window
-                .entry(window.unwrap_or_else(|| realisation.to_string()))
-                .or_default()
-                .push(*area);
-            grid += (*error)?;
+        for value in own {
+            let realisation = value.curve.realisation;
+            let window = self.window_of.get(&realisation).cloned();
+            let window = window.unwrap_or_else(|| realisation.to_string());
+            by_window.entry(window).or_default().push(value.contact_area_fraction);
+            grid += value.relative_area_error?;
             count += 1.0;
         }
         let means: Vec<f64> = by_window.values().map(|own| MeanEstimate::of(own).mean).collect();
@@ -309,13 +345,13 @@ impl Areas {
 
 /// The rows of one value of a property: the one asked for, or the only one there is.
 fn of<T: Copy + PartialEq + std::fmt::Display>(
-    rows: Vec<FrictionRow>,
+    rows: Vec<Average>,
     what: &'static str,
     option: &'static str,
     asked: Option<T>,
-    property: impl Fn(&FrictionRow) -> T,
+    property: impl Fn(&Average) -> T,
     same: impl Fn(&T, &T) -> bool,
-) -> Result<Vec<FrictionRow>, ComputedError> {
+) -> Result<Vec<Average>, ComputedError> {
     let mut found: Vec<T> = Vec::new();
     for row in &rows {
         let value = property(row);

@@ -6,7 +6,8 @@ use crate::recipe::Recipe;
 use crate::rubber::{FiniteStrainRubber, RubberData, RubberModel};
 use crate::stages::ingest::ScanFile;
 use crate::stages::{
-    Job, Planned, Request, Stage, StageError, bem, feedback, fem, ingest, micro, multilevel, sinusoid, tables,
+    Job, Planned, Request, Stage, StageError, bem, feedback, fem, ingest, micro, multilevel,
+    sinusoid, tables,
 };
 use std::collections::BTreeSet;
 use std::path::Path;

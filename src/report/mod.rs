@@ -22,7 +22,6 @@ mod sinusoid;
 mod spreadsheet;
 mod tables;
 
-pub(crate) use tables::significant;
 pub use about::About;
 pub use compare::{Compared, Difference, Pairing, compare};
 pub use figures::{friction_figure, rubber_fit_figure, study_figure};
@@ -30,4 +29,5 @@ pub use long_tables::{long_table, values_table};
 pub use read::ReportError;
 pub use sinusoid::Study;
 pub use spreadsheet::workbook;
+pub(crate) use tables::significant;
 pub use tables::{FrictionTable, comparison_markdown, friction_tables, latex, markdown};

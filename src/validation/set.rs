@@ -10,6 +10,7 @@ use crate::measurement::{
 use crate::recipe::{Recipe, Spectrum, Validation};
 use crate::rubber::{RubberFileError, read_rubber_at};
 use crate::stages::bem::Bem;
+use crate::stages::feedback::Effect;
 use crate::theory::{IsotropicPersson, PerssonError, PerssonOptions};
 use crate::units::Units;
 use serde::Serialize;
@@ -244,11 +245,14 @@ impl Measurement<'_> {
         let available = Computed::available(run)?;
         let mut kinds: Vec<Available> = Vec::new();
         for one in &available {
-            if !kinds.iter().any(|known| (known.model, known.kind) == (one.model, one.kind)) {
+            let same = |known: &&Available| {
+                (known.model, known.kind, known.effect) == (one.model, one.kind, one.effect)
+            };
+            if !kinds.iter().any(|known| same(&known)) {
                 kinds.push(*one);
             }
         }
-        let prediction = |Available { model, kind, .. }: &Available| {
+        let prediction = |Available { model, kind, effect, .. }: &Available| {
             let mut at_pressure: Vec<Computed> = Vec::new();
             let mut values = Vec::new();
             for (index, pressure) in pressures.iter().enumerate() {
@@ -265,6 +269,7 @@ impl Measurement<'_> {
                         model: Some(*model),
                         kind: Some(*kind),
                         pressure_mpa: Some(*pressure),
+                        effect: *effect,
                     };
                     at_pressure.push(Computed::read(run, choice)?);
                 }
@@ -283,7 +288,7 @@ impl Measurement<'_> {
                 label: Label {
                     model: model.name().into(),
                     surfaces: kind.to_string(),
-                    effect: "none".into(),
+                    effect: effect.map_or("none", Effect::name).into(),
                 },
                 shortest_wavelength_mm: shortest.fold(f64::INFINITY, f64::min),
                 values,

@@ -162,7 +162,7 @@ impl Fit {
             }
             (None, None) => None,
         };
-        Ok(Choice { model: self.model, kind, pressure_mpa: self.pressure })
+        Ok(Choice { model: self.model, kind, pressure_mpa: self.pressure, effect: None })
     }
 
     /// Measurements at another pressure than that of the run have another friction.

@@ -159,13 +159,9 @@ impl<'a> Curve<'a> {
     }
 
     /// The contact at a pressure in Pa on a grid that is fine enough for it, with its errors by the grid.
-    pub fn contact(
-        &mut self,
-        pressure: f64,
-    ) -> Result<(SolveRow, Option<GridError>), SolveError> {
+    pub fn contact(&mut self, pressure: f64) -> Result<(SolveRow, Option<GridError>), SolveError> {
         let rule = self.rule;
-        let refined =
-            rule.refined(pressure, |points| self.solve(pressure, points), on_its_grid)?;
+        let refined = rule.refined(pressure, |points| self.solve(pressure, points), on_its_grid)?;
         let discretisation_error = refined.error.map(|error| error.friction_coefficient);
         Ok((SolveRow { discretisation_error, ..refined.solution }, refined.error))
     }

@@ -42,11 +42,11 @@ pub use rows::{
     CURVES, CurveRow, FIELDS, REALISATIONS, RealisationsRow, SOLVES, SolveRow, fields_schema,
     schemas,
 };
-pub(crate) use speeds::{Speeds, deserialize_some as some_speeds};
 pub use scans::{SCAN_ERRORS, ScanErrorRow, Scans};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+pub(crate) use speeds::{Speeds, deserialize_some as some_speeds};
 use std::path::{Path, PathBuf};
 pub use task::Task;
 pub use wanted::{Given, Wanted};

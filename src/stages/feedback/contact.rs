@@ -253,11 +253,7 @@ impl<'a> Ladder<'a> {
     }
 
     /// The error is the interrupt.
-    fn solve(
-        &self,
-        points: usize,
-        start: Option<&WaveFactors>,
-    ) -> Result<OnOneGrid, SolveError> {
+    fn solve(&self, points: usize, start: Option<&WaveFactors>) -> Result<OnOneGrid, SolveError> {
         let Common { rubber, laws, interrupted, .. } = *self.common;
         let Task { surface, speed_mm_s } = *self.task;
         let period = surface.period();

@@ -30,7 +30,8 @@ pub(super) fn of_contacts(contacts: &[ContactRow], unsolved: &[UnsolvedRow]) -> 
         ));
     }
     let relative = |row: &ContactRow| {
-        let friction = row.discretisation_error? / row.friction_coefficient.abs().max(LEAST_FRICTION);
+        let friction =
+            row.discretisation_error? / row.friction_coefficient.abs().max(LEAST_FRICTION);
         Some(friction.max(row.relative_area_error?))
     };
     let coarse: Vec<f64> = contacts.iter().filter_map(relative).filter(|e| *e > COARSE).collect();
@@ -63,13 +64,13 @@ pub(super) fn of_laws(
     feedback: &Feedback,
     contacts: &[ContactRow],
 ) -> Vec<String> {
-    let most = |of: fn(&ContactRow) -> Option<f64>| {
-        contacts.iter().filter_map(of).fold(0.0, f64::max)
-    };
+    let most =
+        |of: fn(&ContactRow) -> Option<f64>| contacts.iter().filter_map(of).fold(0.0, f64::max);
     let mut warnings =
         laws.extrapolations(most(|row| row.highest_rise_k), most(|row| row.largest_strain));
     let sweeps = material.payne.as_ref().filter(|_| feedback.strain);
-    warnings.extend(sweeps.zip(material.temperature_c()).and_then(|(payne, c)| payne.extrapolation(c)));
+    warnings
+        .extend(sweeps.zip(material.temperature_c()).and_then(|(payne, c)| payne.extrapolation(c)));
     warnings
 }
 

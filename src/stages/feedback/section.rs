@@ -83,7 +83,8 @@ impl Feedback {
             return Err(InvalidRecipe::Missing { key: "feedback.strain", advice });
         }
         if bem.pressures_mpa.is_empty() {
-            let advice = "[feedback] solves contacts at given pressures, such as pressures_mpa = [0.3]";
+            let advice =
+                "[feedback] solves contacts at given pressures, such as pressures_mpa = [0.3]";
             return Err(InvalidRecipe::Missing { key: "bem.pressures_mpa", advice });
         }
         if let Some(speeds) = &self.speeds_mm_s {
@@ -94,7 +95,8 @@ impl Feedback {
         }
         let Some(heat) = &self.heat else { return Ok(()) };
         if bem.temperature_c.is_none() {
-            let advice = "[feedback.heat] warms the rubber from its temperature before sliding: state it";
+            let advice =
+                "[feedback.heat] warms the rubber from its temperature before sliding: state it";
             return Err(InvalidRecipe::Missing { key: "bem.temperature_c", advice });
         }
         heat.check()
@@ -131,7 +133,8 @@ const ROAD_DENSITY: std::ops::RangeInclusive<f64> = 100.0..=25_000.0;
 const ROAD_DENSITY_IN_WORDS: &str = "from 100 to 25000 kg/m³ (2.7 g/cm³ are 2700)";
 /// Heat capacities in J/(kg K) of what rubber slides over.
 const ROAD_CAPACITY: std::ops::RangeInclusive<f64> = 50.0..=5000.0;
-const ROAD_CAPACITY_IN_WORDS: &str = "from 50 to 5000 J/(kg K) (0.85 J/(g K), or kJ/(kg K), are 850)";
+const ROAD_CAPACITY_IN_WORDS: &str =
+    "from 50 to 5000 J/(kg K) (0.85 J/(g K), or kJ/(kg K), are 850)";
 
 impl Heat {
     fn check(&self) -> Result<(), InvalidRecipe> {
@@ -154,9 +157,12 @@ impl Heat {
                      (sliding_distance_mm), such as the length of a block";
                 Err(InvalidRecipe::Missing { key, advice })
             }
-            (Some(seconds), Some(_)) => {
-                require(false, key, seconds, "left out beside sliding_distance_mm: give one of both")
-            }
+            (Some(seconds), Some(_)) => require(
+                false,
+                key,
+                seconds,
+                "left out beside sliding_distance_mm: give one of both",
+            ),
             (Some(seconds), None) => {
                 let words = "from 1e-9 to 1e6 s (20 ms are 0.02)";
                 require((1e-9..=1e6).contains(&seconds), key, seconds, words)
@@ -201,7 +207,8 @@ impl RoadBody {
         require(ROAD_CAPACITY.contains(&value), key, value, ROAD_CAPACITY_IN_WORDS)?;
         let Some(value) = self.heat_transfer_w_m2k else { return Ok(()) };
         let key = "feedback.heat.road.heat_transfer_w_m2k";
-        let words = "from 1 to 1e9 W/(m² K); left out for surfaces that are equally warm where they touch";
+        let words =
+            "from 1 to 1e9 W/(m² K); left out for surfaces that are equally warm where they touch";
         require((1.0..=1e9).contains(&value), key, value, words)
     }
 
