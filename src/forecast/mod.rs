@@ -34,6 +34,7 @@ use crate::rubber::RubberModel;
 use crate::stages;
 use crate::stages::areal;
 use crate::stages::bem::{self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, Worth};
+use crate::stages::feedback::{self, Feedback};
 use crate::stages::ingest::{read_maps, read_windows};
 use crate::stages::micro::Parting;
 use crate::stages::realise::SurfaceKind;
@@ -164,6 +165,10 @@ pub fn forecast(
         let (seconds, megabytes) = areal(&chain, &RunView::of(folder.path()), threads)?;
         stages.push(StageForecast { stage: stages::areal::STAGE, seconds: Some(seconds) });
         areal_megabytes = megabytes;
+    }
+    if let Some(section) = chain.feedback {
+        let seconds = trial.feedback(section, &chain) / threads as f64;
+        stages.push(StageForecast { stage: stages::feedback::STAGE, seconds: Some(seconds) });
     }
     let mut microscales = Vec::new();
     if let Some(parameters) = chain.micro {
@@ -370,6 +375,16 @@ impl Trial {
                 _ => scales::scales(&self.rubber, &profile, speed, contact, threshold),
             },
         }
+    }
+
+    /// Expected seconds on one thread of the contacts with their own heat and strain.
+    fn feedback(&self, section: &Feedback, chain: &Chain) -> f64 {
+        let of_kind = |surface: &Surface| {
+            let speeds = chain.bem.speeds_mm_s.iter();
+            let realisations = speeds.map(|v| self.realisations(surface.kind, *v, chain)).max();
+            f64::from(realisations.unwrap_or(0)) * feedback::seconds(section, chain.bem, surface)
+        };
+        self.first_surfaces().map(of_kind).sum()
     }
 
     /// Realisations that the recipe takes, or is expected to take for the accuracy it asks for.

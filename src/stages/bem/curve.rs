@@ -214,6 +214,11 @@ impl GridRule {
         }
     }
 
+    /// Points of the grid of a contact that is not small.
+    pub fn usual_points(&self) -> usize {
+        self.base_points
+    }
+
     /// Points of the coarsest grid that is solved.
     pub fn coarsest_points(&self) -> usize {
         match self.grid_tolerance {

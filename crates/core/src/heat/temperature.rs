@@ -189,6 +189,8 @@ struct Rising<'a> {
     duration: f64,
     /// Temperature of the insulated surface by the source alone.
     surface: Vec<Complex64>,
+    /// What comes up from below at the depths of each wave but the mean, and at the surface; empty without a source.
+    risen: Vec<(Vec<Complex64>, Complex64)>,
 }
 
 impl<'a> Rising<'a> {
@@ -199,33 +201,35 @@ impl<'a> Rising<'a> {
             diffusivity: setting.rubber.diffusivity(),
             duration: setting.duration,
             surface: vec![],
+            risen: vec![],
         };
-        let surface = |k: usize| {
-            let values = source.wave(k);
-            if k == 0 {
-                return Complex64::from(rising.mean(|s| rising.surface_of(s, values.clone())));
-            }
-            rising.surface_of(rising.decay(k), values)
-        };
-        rising.surface = (0..=source.waves()).into_par_iter().map(surface).collect();
+        let risen = |k: usize| rising.rise(rising.decay(k), source.wave(k));
+        rising.risen = (1..=source.waves()).into_par_iter().map(risen).collect();
+        let mean = source.wave(0);
+        let at_surface = |s: Complex64, up: Complex64| up / (rising.conductivity * s);
+        let mean = rising.mean(|s| at_surface(s, rising.rise(s, mean.clone()).1));
+        let waves = rising.risen.iter().enumerate();
+        let waves = waves.map(|(k, (_, up))| at_surface(rising.decay(k + 1), *up));
+        rising.surface = std::iter::once(Complex64::from(mean)).chain(waves).collect();
         rising
     }
 
     /// Temperatures of all waves at all depths, with the flux into the surface.
-    fn fall(&self, flux: &[Complex64]) -> Vec<Vec<Complex64>> {
-        let wave = |k: usize| {
-            let values = self.source.wave(k);
-            if k > 0 {
-                return self.column(self.decay(k), &values, flux[k]);
-            }
-            let mut mean = vec![Complex64::ZERO; values.len()];
-            for (s, factor) in self.contour() {
-                let column = self.column(s, &values, flux[0]);
-                mean.iter_mut().zip(column).for_each(|(m, t)| m.re += (factor * t).im);
-            }
-            mean
+    fn fall(mut self, flux: &[Complex64]) -> Vec<Vec<Complex64>> {
+        let risen = std::mem::take(&mut self.risen);
+        let values = self.source.wave(0);
+        let mut mean = vec![Complex64::ZERO; values.len()];
+        for (s, factor) in self.contour() {
+            let column = self.column(s, &values, self.rise(s, values.clone()), flux[0]);
+            mean.iter_mut().zip(column).for_each(|(m, t)| m.re += (factor * t).im);
+        }
+        let wave = |(k, risen)| {
+            let k: usize = k + 1;
+            self.column(self.decay(k), &self.source.wave(k), risen, flux[k])
         };
-        (0..=self.source.waves()).into_par_iter().map(wave).collect()
+        let mut waves: Vec<Vec<Complex64>> = risen.into_par_iter().enumerate().map(wave).collect();
+        waves.insert(0, mean);
+        waves
     }
 
     fn depths(&self) -> &Depths {
@@ -236,23 +240,29 @@ impl<'a> Rising<'a> {
         decay(TAU * k as f64 / self.source.period(), self.source.speed(), self.diffusivity)
     }
 
-    fn surface_of(&self, s: Complex64, mut values: Vec<Complex64>) -> Complex64 {
+    /// What comes up from below with the decay `s`, at all depths and at the surface; empty without a source.
+    fn rise(&self, s: Complex64, mut values: Vec<Complex64>) -> (Vec<Complex64>, Complex64) {
         if values.iter().all(|q| *q == Complex64::ZERO) {
-            return Complex64::ZERO;
+            return (vec![], Complex64::ZERO);
         }
-        self.depths().sweep_up(s, &mut values) / (self.conductivity * s)
+        let at_surface = self.depths().sweep_up(s, &mut values);
+        (values, at_surface)
     }
 
-    /// Temperature at all depths for a source and a flux into the surface, steady with the decay `s`.
-    fn column(&self, s: Complex64, values: &[Complex64], flux: Complex64) -> Vec<Complex64> {
-        if values.iter().all(|q| *q == Complex64::ZERO) {
+    /// Temperature at all depths for a source, what comes up of it, and a flux into the surface, steady with the decay `s`.
+    fn column(
+        &self,
+        s: Complex64,
+        values: &[Complex64],
+        (mut result, at_surface): (Vec<Complex64>, Complex64),
+        flux: Complex64,
+    ) -> Vec<Complex64> {
+        if result.is_empty() {
             let nodes = self.depths().nodes();
             let below = |(z, _): &(f64, f64)| flux / (self.conductivity * s) * (-s * z).exp();
             return nodes.iter().take(values.len()).map(below).collect();
         }
-        let mut result = values.to_vec();
-        let reflected = self.depths().sweep_up(s, &mut result);
-        self.depths().sweep_down(s, values, reflected + 2.0 * flux, &mut result);
+        self.depths().sweep_down(s, values, at_surface + 2.0 * flux, &mut result);
         let factor = (2.0 * self.conductivity * s).inv();
         result.iter_mut().for_each(|t| *t *= factor);
         result

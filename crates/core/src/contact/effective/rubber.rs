@@ -44,7 +44,8 @@ impl WaveFactors {
     /// The same factors stated at other waves of ascending wavenumber in rad/m; at least one.
     #[must_use]
     pub fn at_waves(&self, wavenumber: Vec<f64>) -> Self {
-        let of = |values: &[f64]| wavenumber.iter().map(|q| self.between(*q, values)).collect();
+        let places: Vec<Place> = wavenumber.iter().map(|q| self.place(*q)).collect();
+        let of = |values: &[f64]| places.iter().map(|place| place.of(values)).collect();
         Self {
             ln_shift: of(&self.ln_shift),
             ln_vertical: of(&self.ln_vertical),
@@ -54,25 +55,40 @@ impl WaveFactors {
         }
     }
 
-    /// One of the lists at a wavenumber in rad/m.
-    fn between(&self, wavenumber: f64, values: &[f64]) -> f64 {
+    fn place(&self, wavenumber: f64) -> Place {
         let after = self.wavenumber.partition_point(|q| *q < wavenumber);
         let last = self.wavenumber.len() - 1;
         let (left, right) = (after.saturating_sub(1).min(last), after.min(last));
         let (from, to) = (self.wavenumber[left], self.wavenumber[right]);
         let share = if left == right { 0.0 } else { (wavenumber / from).ln() / (to / from).ln() };
-        // A difference of equal values is zero, so that factors of one stay what they are.
-        values[left] + share * (values[right] - values[left])
+        Place { left, right, share }
     }
 
     fn at(&self, wavenumber: f64) -> Factors {
-        let between = |values: &[f64]| self.between(wavenumber, values);
-        let vertical = between(&self.ln_vertical).exp();
+        let place = self.place(wavenumber);
+        let vertical = place.of(&self.ln_vertical).exp();
         Factors {
-            shift: between(&self.ln_shift).exp(),
-            storage: vertical * between(&self.storage),
-            loss: vertical * between(&self.loss),
+            shift: place.of(&self.ln_shift).exp(),
+            storage: vertical * place.of(&self.storage),
+            loss: vertical * place.of(&self.loss),
         }
+    }
+}
+
+/// Where a wavenumber lies among others.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    left: usize,
+    right: usize,
+    /// Of the way from left to right.
+    share: f64,
+}
+
+impl Place {
+    /// The value there; a difference of equal values is zero, so that factors of one stay what they are.
+    fn of(self, values: &[f64]) -> f64 {
+        let (left, right) = (values[self.left], values[self.right]);
+        left + self.share * (right - left)
     }
 }
 

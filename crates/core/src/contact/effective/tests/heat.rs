@@ -54,6 +54,55 @@ fn a_hot_contact_is_the_contact_of_the_rubber_that_its_heat_makes() {
     assert!(heat.contact_mean > heat.background && heat.highest > heat.contact_mean);
 }
 
+/// The moduli of a coarser grid lead to the same contact in fewer steps.
+#[test]
+fn a_fixed_point_does_not_depend_on_where_it_is_sought_from() {
+    let (rubber, law) = (Rubber::table_2_1(), wlf());
+    let heat = HeatFeedback { thermal: thermal(), law: &law, temperature_c: 20.0 };
+    let on = |points: usize, start: Option<&WaveFactors>| {
+        let heights = five_waves(points);
+        let setup = FeedbackSetup::new(&rubber, 0.3, PERIOD, &heights);
+        let mut contact =
+            FeedbackContact::new(FeedbackSetup { heat: Some(heat), ..setup }).unwrap();
+        match start {
+            Some(start) => contact.solve_from(3e5, start).unwrap(),
+            None => contact.solve_effective(3e5).unwrap(),
+        }
+    };
+    let coarse = on(512, None);
+    let (cold, near) = (on(1024, None), on(1024, Some(&coarse.factors)));
+    assert!(near.steps < cold.steps, "{} {}", near.steps, cold.steps);
+    let same = |a: f64, b: f64| approx::assert_relative_eq!(a, b, max_relative = 1e-5);
+    same(near.solution.friction_coefficient, cold.solution.friction_coefficient);
+    same(near.solution.contact_area_fraction, cold.solution.contact_area_fraction);
+    same(near.heat.unwrap().contact_mean, cold.heat.unwrap().contact_mean);
+    // Contact and moduli that agree already need one contact, and stay.
+    let again = on(1024, Some(&cold.factors));
+    assert_eq!(again.steps, 1);
+    same(again.solution.friction_coefficient, cold.solution.friction_coefficient);
+    // Factors are kept where they are stated, and constant beyond.
+    let q = &coarse.factors.wavenumber;
+    let resampled = coarse.factors.at_waves(vec![q[0], q[9], 1e3 * q[q.len() - 1]]);
+    let stated = &coarse.factors.ln_shift;
+    assert_eq!(resampled.ln_shift, [stated[0], stated[9], stated[stated.len() - 1]]);
+}
+
+#[test]
+fn an_interrupt_ends_a_contact_with_heat() {
+    let (rubber, law, heights) = (Rubber::table_2_1(), wlf(), five_waves(512));
+    let heat = HeatFeedback { thermal: thermal(), law: &law, temperature_c: 20.0 };
+    let interrupt = crate::numerics::Interrupt::default();
+    let setup = FeedbackSetup {
+        heat: Some(heat),
+        interrupt: Some(&interrupt),
+        ..FeedbackSetup::new(&rubber, 0.3, PERIOD, &heights)
+    };
+    let mut contact = FeedbackContact::new(setup).unwrap();
+    interrupt.set();
+    let error = contact.solve_effective(3e5).unwrap_err();
+    assert_eq!(error, EffectiveError::Contact(crate::contact::ContactError::Interrupted));
+}
+
 #[test]
 fn heat_brings_more_contact_at_speed_and_a_road_takes_some_of_it_back() {
     let slow = hot(1e-6, 512, thermal());
