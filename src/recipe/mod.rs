@@ -365,7 +365,7 @@ impl Chain<'_> {
         })?;
         if let Some(feedback) = self.feedback {
             let shear = self.adhesion.and_then(|adhesion| adhesion.shear_law().ok());
-            feedback.check(self.bem, shear.as_ref())?;
+            feedback.check(self.bem, &self.realise.methods, shear.as_ref())?;
         }
         let limit = self.realise.most_realisations.unwrap_or(0);
         require(
