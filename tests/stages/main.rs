@@ -14,6 +14,7 @@ mod bem;
 mod changes;
 mod characterise;
 mod damage;
+mod feedback;
 mod golden;
 mod hybrid;
 mod instrument_files;
