@@ -15,6 +15,7 @@ const PROGRAM: &[&str] = &[
     "measurement",
     "recipe",
     "report",
+    "validation",
     "pipeline",
     "sweep",
     "schemas",

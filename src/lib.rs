@@ -51,6 +51,7 @@
 //! | [`measurement`] | measured friction, and what a run has beside it |
 //! | [`recipe`] | the TOML file that says what a run does |
 //! | [`report`] | tables and figures for people |
+//! | [`validation`] | measured friction beside what is computed for it |
 //! | [`pipeline`] | the one function that wires the stages |
 //! | [`sweep`] | the cases of a recipe, spread over many machines |
 //! | [`schemas`] | JSON schemas of the recipe and of every file that asperity writes |
@@ -88,3 +89,4 @@ pub mod stages;
 pub mod sweep;
 pub mod text;
 pub mod units;
+pub mod validation;

@@ -56,6 +56,12 @@ pub enum InvalidRecipe {
         /// Their number.
         cases: usize,
     },
+    /// A spectrum in place of surfaces, given to a command that runs stages.
+    #[error(
+        "the recipe has the spectrum of [validation] and neither scans nor waves, so there is nothing to run: `asperity \
+         validate` puts Persson's theory beside its measurement"
+    )]
+    SpectrumAlone,
     /// Cases of the study of one sine.
     #[error("[sinusoid] lists what it solves: there is nothing to sweep")]
     SweepOfSinusoid,
@@ -79,6 +85,7 @@ impl HasKind for InvalidRecipe {
             | Self::SectionBesideSinusoid { .. }
             | Self::HybridWithoutMicro
             | Self::SeveralCases { .. }
+            | Self::SpectrumAlone
             | Self::SweepOfSinusoid => ErrorKind::Input,
             Self::Text(_) => ErrorKind::Input,
             Self::Conditioning(source) => source.kind(),

@@ -31,8 +31,8 @@
 //! | `sweep` | many cases on many machines |
 //! | `synth` | synthetic scans of asphalt |
 //! | `theory` | what older theories predict, without a contact being solved |
-//! | `text_file` | text files of numbers, with the place of what is wrong |
 //! | `threads` | the threads of a command |
+//! | `validate` | measured friction beside what is computed for it |
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
 
@@ -61,9 +61,9 @@ mod solve;
 mod status;
 mod sweep;
 mod synth;
-mod text_file;
 mod theory;
 mod threads;
+mod validate;
 mod values;
 mod verify;
 
@@ -114,6 +114,7 @@ enum Command {
     /// Find the shear stress of the contact area.
     #[command(subcommand)]
     Adhesion(adhesion::Adhesion),
+    Validate(validate::Validate),
     Synth(synth::Synth),
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
@@ -142,6 +143,7 @@ impl Arguments {
             Command::Theory(command) => command.run(self.quiet),
             Command::Rubber(command) => command.run(self.quiet),
             Command::Adhesion(command) => command.run(self.quiet),
+            Command::Validate(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),

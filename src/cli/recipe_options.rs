@@ -53,11 +53,7 @@ impl RecipeOptions {
     /// # Errors
     /// [`CliError::Input`]; [`CliError::Failure`] if the working folder is not known.
     pub(super) fn recipe_and_origin(&self) -> Result<(Recipe, LastRun), CliError> {
-        let text = files::read_settings(&self.recipe)
-            .map_err(|source| RecipeError::Read { path: self.recipe.clone(), source })?;
-        let recipe = with_scans(Recipe::parse(&text, &self.recipe)?, &self.recipe, &self.scans)?;
-        let recipe = with_tolerance(recipe, self.tolerance)?;
-        Ok((recipe, LastRun::new(&self.recipe, text, &self.scans, self.tolerance)?))
+        recipe_and_origin(&self.recipe, &self.scans, self.tolerance)
     }
 
     /// The run folder.
@@ -66,8 +62,24 @@ impl RecipeOptions {
     }
 }
 
+/// The recipe of a file with other scans and another accuracy, if they are given, and the note of what was given.
+///
+/// # Errors
+/// As [`RecipeOptions::recipe_and_origin`].
+pub(super) fn recipe_and_origin(
+    path: &Path,
+    scans: &[PathBuf],
+    tolerance: Option<f64>,
+) -> Result<(Recipe, LastRun), CliError> {
+    let text = files::read_settings(path)
+        .map_err(|source| RecipeError::Read { path: path.to_owned(), source })?;
+    let recipe = with_scans(Recipe::parse(&text, path)?, path, scans)?;
+    let recipe = with_tolerance(recipe, tolerance)?;
+    Ok((recipe, LastRun::new(path, text, scans, tolerance)?))
+}
+
 /// The run folder of a recipe: it follows from where the recipe is, not from where the command is given.
-fn default_out(recipe: &Path) -> PathBuf {
+pub(super) fn default_out(recipe: &Path) -> PathBuf {
     let folder = recipe.parent().unwrap_or(Path::new(""));
     let name = |folder: &Path| folder.file_name() == Some(RECIPE_FOLDER.as_ref());
     let beside = if name(folder) {

@@ -63,7 +63,7 @@ pub(super) struct Run {
 
 /// What a run did about a stage.
 #[derive(Serialize)]
-struct StageSummary {
+pub(super) struct StageSummary {
     stage: Stage,
     computed: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,49 +86,12 @@ impl Run {
         if recipe.sweep.is_some() {
             return self.run_cases(&recipe, &last_run, &out, quiet);
         }
-        let interrupt = Interrupt::install()?;
-        let progress = Progress::new(quiet);
-        let summaries = Mutex::new(Vec::new());
-        let record = |summary: StageSummary| {
-            if let Ok(mut summaries) = summaries.lock() {
-                summaries.push(summary);
-            }
-        };
-        let ready = Ready::new(&recipe, &out, selection)?;
-        last_run.check(&out, self.folder.take_over)?;
-        let folder = RunFolder::open(&out).map_err(PipelineError::from)?;
-        // At the start: the folder of an interrupted run is that of this recipe, too.
-        last_run.write(&out, self.folder.take_over)?;
-        ready
-            .run(&folder, interrupt.flag(), &|event| match event {
-                Event::Started(stage) => progress.start(stage),
-                Event::Progress(_, done, total) => progress.advance(done, total),
-                Event::Finished(stage, manifest) => {
-                    progress.finish();
-                    note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
-                    if stage == stages::ingest::STAGE {
-                        cleaned(quiet, &out);
-                    }
-                    warn(quiet, manifest);
-                    let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
-                    record(StageSummary { stage, computed: true, seconds, warnings });
-                }
-                Event::Fresh(stage, manifest) => {
-                    note(quiet, format_args!("{stage:<13} up to date"));
-                    warn(quiet, manifest);
-                    let warnings = manifest.warnings.clone();
-                    record(StageSummary { stage, computed: false, seconds: None, warnings });
-                }
-            })
-            .inspect_err(|error| {
-                progress.finish();
-                if error.is_interrupt() {
-                    note(quiet, "results so far are kept: the same command continues");
-                }
-            })?;
+        let summaries =
+            bring_up_to_date(&recipe, &last_run, &out, selection, self.folder.take_over, quiet)?;
         if self.json {
-            let stages = summaries.into_inner().unwrap_or_default();
-            return print(&json(&serde_json::json!({ "out": path_text(&out), "stages": stages }))?);
+            return print(&json(
+                &serde_json::json!({ "out": path_text(&out), "stages": summaries }),
+            )?);
         }
         note(quiet, format_args!("results in {}", out.display()));
         Ok(())
@@ -188,6 +151,62 @@ impl Run {
         );
         Ok(())
     }
+}
+
+/// Brings the stages of one case up to date in a run folder, with progress and warnings on standard error.
+///
+/// # Errors
+/// [`CliError`].
+pub(super) fn bring_up_to_date(
+    recipe: &Recipe,
+    last_run: &LastRun,
+    out: &Path,
+    selection: Selection,
+    take_over: bool,
+    quiet: bool,
+) -> Result<Vec<StageSummary>, CliError> {
+    refuse_among_scans(recipe, out)?;
+    let interrupt = Interrupt::install()?;
+    let progress = Progress::new(quiet);
+    let summaries = Mutex::new(Vec::new());
+    let record = |summary: StageSummary| {
+        if let Ok(mut summaries) = summaries.lock() {
+            summaries.push(summary);
+        }
+    };
+    let ready = Ready::new(recipe, out, selection)?;
+    last_run.check(out, take_over)?;
+    let folder = RunFolder::open(out).map_err(PipelineError::from)?;
+    // At the start: the folder of an interrupted run is that of this recipe, too.
+    last_run.write(out, take_over)?;
+    ready
+        .run(&folder, interrupt.flag(), &|event| match event {
+            Event::Started(stage) => progress.start(stage),
+            Event::Progress(_, done, total) => progress.advance(done, total),
+            Event::Finished(stage, manifest) => {
+                progress.finish();
+                note(quiet, format_args!("{stage:<13} {:>8.2} s", manifest.seconds));
+                if stage == stages::ingest::STAGE {
+                    cleaned(quiet, out);
+                }
+                warn(quiet, manifest);
+                let (seconds, warnings) = (Some(manifest.seconds), manifest.warnings.clone());
+                record(StageSummary { stage, computed: true, seconds, warnings });
+            }
+            Event::Fresh(stage, manifest) => {
+                note(quiet, format_args!("{stage:<13} up to date"));
+                warn(quiet, manifest);
+                let warnings = manifest.warnings.clone();
+                record(StageSummary { stage, computed: false, seconds: None, warnings });
+            }
+        })
+        .inspect_err(|error| {
+            progress.finish();
+            if error.is_interrupt() {
+                note(quiet, "results so far are kept: the same command continues");
+            }
+        })?;
+    Ok(summaries.into_inner().unwrap_or_default())
 }
 
 /// Refuses a run folder that is a folder of scans: its files would be taken for scans by the next run.

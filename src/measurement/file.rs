@@ -81,15 +81,16 @@ const NAMES: [(&str, Quantity); 6] = [
     ("pressure_mpa", Quantity::Pressure),
 ];
 
-const HEADER: &str = "the columns must have names: speed_mm_s, speed_m_s or log10_speed_m_s, and friction; \
+const HEADER: &str = "the columns must have names in a line without `#`: speed_mm_s, speed_m_s or log10_speed_m_s, and friction; \
      optional are temperature_c and pressure_mpa";
 
 /// Reads measured friction: text with a header, columns separated by commas, semicolons, tabs or blanks; lines that begin with `#` are
-/// comments. Columns with other names are not read.
+/// comments. Columns with other names are not read. `columns` are the names of the columns of a file that has no header, none for
+/// one that has.
 ///
 /// # Errors
 /// [`MeasuredFileError`] with the line and the value as typed.
-pub fn read_measured(path: &Path) -> Result<MeasuredFile, MeasuredFileError> {
+pub fn read_measured(path: &Path, columns: &[String]) -> Result<MeasuredFile, MeasuredFileError> {
     let unreadable = |source| MeasuredFileError::Unreadable { path: path.to_path_buf(), source };
     let problem = |line, problem: String| MeasuredFileError::Problem {
         path: path.to_path_buf(),
@@ -97,15 +98,17 @@ pub fn read_measured(path: &Path) -> Result<MeasuredFile, MeasuredFileError> {
         problem,
     };
     let text = files::read_settings(path).map_err(unreadable)?;
-    parse(&text).map_err(|(line, text)| problem(line, text))
+    parse(&text, columns).map_err(|(line, text)| problem(line, text))
 }
 
-fn parse(text: &str) -> Result<MeasuredFile, (Option<usize>, String)> {
+fn parse(text: &str, names: &[String]) -> Result<MeasuredFile, (Option<usize>, String)> {
     let mut rows = (1..)
         .zip(text.lines())
         .map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')))
-        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (number, header) = rows.next().ok_or((None, format!("the file is empty; {HEADER}")))?;
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .peekable();
+    let (number, header) =
+        rows.peek().copied().ok_or_else(|| (None, format!("the file is empty; {HEADER}")))?;
     let separator = [';', '\t', ','].into_iter().find(|mark| header.contains(*mark));
     let cells = |line: &str| -> Vec<String> {
         match separator {
@@ -113,7 +116,12 @@ fn parse(text: &str) -> Result<MeasuredFile, (Option<usize>, String)> {
             None => line.split_whitespace().map(str::to_owned).collect(),
         }
     };
-    let columns = columns(&cells(header)).map_err(|text| (Some(number), text))?;
+    let columns = if names.is_empty() {
+        rows.next();
+        columns(&cells(header)).map_err(|text| (Some(number), text))?
+    } else {
+        columns(names).map_err(|text| (None, text))?
+    };
     let mut file = MeasuredFile { points: Vec::new(), lines: Vec::new() };
     for (number, line) in rows {
         let point = point(&columns, &cells(line)).map_err(|text| (Some(number), text))?;
@@ -213,18 +221,21 @@ mod tests {
     #[test]
     fn columns_are_found_by_their_names() {
         let text = "# tester 7\nspeed_m_s; friction; note; temperature_c\n1e-3; 1.2; a; 20\n0.5; 1.4; b; 21.5\n";
-        let file = parse(text).unwrap();
+        let file = parse(text, &[]).unwrap();
         assert_eq!((file.points.len(), &file.lines[..]), (2, &[3, 4][..]));
         let last = file.points[1];
         assert_eq!((last.speed_mm_s, last.friction), (500.0, 1.4));
         assert_eq!((last.temperature_c, last.pressure_mpa), (Some(21.5), None));
-        let blanks = parse("log10_speed_m_s  friction\n-3 0.7\n").unwrap();
+        let blanks = parse("log10_speed_m_s  friction\n-3 0.7\n", &[]).unwrap();
+        let names = ["log10_speed_m_s", "friction"].map(str::to_owned);
+        let named = parse("# no header\n-3 0.7\n", &names).unwrap();
+        assert_eq!((named.lines, &named.points), (vec![2], &blanks.points));
         approx::assert_relative_eq!(blanks.points[0].speed_mm_s, 1.0, max_relative = 1e-14);
     }
 
     #[test]
     fn mistakes_are_told_with_their_line() {
-        let error = |text: &str| parse(text).unwrap_err();
+        let error = |text: &str| parse(text, &[]).unwrap_err();
         assert!(error("").1.contains("empty"));
         assert!(error("speed,friction\n1,2\n").1.contains("0 columns of the speed"));
         assert_eq!(

@@ -3,9 +3,14 @@
 use crate::artifact::{ArtifactError, RunView};
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::numerics::interpolation::CubicHermite;
-use crate::stages::bem::Given;
-use crate::stages::realise::SurfaceKind;
-use crate::stages::tables::{FRICTION, FrictionRow, Model};
+use crate::numerics::statistics::MeanEstimate;
+use crate::stages::areal::AREAL_CURVES;
+use crate::stages::bem::{CURVES, Given};
+use crate::stages::feedback::{CONTACTS, Effect};
+use crate::stages::friction::FrictionAt;
+use crate::stages::realise::{PROFILES, SurfaceKind};
+use crate::stages::tables::{EFFECTS, FRICTION, Model};
+use std::collections::BTreeMap;
 
 /// Pressures that differ by less, relative, are the same: tables state them with all digits, people with two.
 const SAME_PRESSURE: f64 = 1e-3;
@@ -19,6 +24,8 @@ pub struct Choice {
     pub kind: Option<SurfaceKind>,
     /// Mean pressure in MPa; needed where the run has several.
     pub pressure_mpa: Option<f64>,
+    /// What the contact does to its rubber, from the tables of `[feedback]`; `None` for those without.
+    pub effect: Option<Effect>,
 }
 
 /// Friction and area of a run over the speed.
@@ -36,9 +43,8 @@ pub struct Computed {
     pub speeds_mm_s: [f64; 2],
     friction: CubicHermite,
     ln_area: CubicHermite,
-    error: CubicHermite,
-    /// Whether every row has an estimated error.
-    errors_known: bool,
+    error: Option<CubicHermite>,
+    relative_area_error: Option<CubicHermite>,
 }
 
 /// What a run has at one speed.
@@ -50,6 +56,69 @@ pub struct ComputedAt {
     pub contact_area_fraction: f64,
     /// Estimated error of the hysteretic friction; `None` if that of one row is not known.
     pub error: Option<f64>,
+    /// Relative error of the contact area: its 95 % interval by the windows, or by the realisations of sines, and its error by the grid;
+    /// `None` where one of them is not known.
+    pub relative_area_error: Option<f64>,
+}
+
+/// What a run has: a model, a kind of surfaces and a pressure, of which [`Computed::read`] takes one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Available {
+    /// Contact model.
+    pub model: Model,
+    /// Kind of surfaces.
+    pub kind: SurfaceKind,
+    /// Mean pressure in MPa.
+    pub pressure_mpa: f64,
+    /// What the contact does to its rubber; `None` for the tables without `[feedback]`.
+    pub effect: Option<Effect>,
+}
+
+/// An average of a run at a given pressure.
+#[derive(Debug, Clone)]
+struct Average {
+    model: Model,
+    kind: SurfaceKind,
+    pressure_mpa: f64,
+    effect: Option<Effect>,
+    speed_mm_s: f64,
+    shortest_wavelength_mm: f64,
+    hysteretic: f64,
+    contact_area_fraction: f64,
+    error: Option<f64>,
+}
+
+/// All averages of a run at given pressures, those of `[feedback]` behind those without.
+fn averages(run: &RunView) -> Result<Vec<Average>, ArtifactError> {
+    let friction = run.rows(FRICTION)?.into_iter().filter(|row| row.given == Given::Pressure);
+    let mut all: Vec<Average> = friction
+        .map(|row| Average {
+            model: row.model,
+            kind: row.kind,
+            pressure_mpa: row.pressure_mpa,
+            effect: None,
+            speed_mm_s: row.speed_mm_s,
+            shortest_wavelength_mm: row.shortest_wavelength_mm,
+            hysteretic: row.mean,
+            contact_area_fraction: row.contact_area_fraction,
+            error: row.error_estimate,
+        })
+        .collect();
+    if run.has(EFFECTS)? {
+        all.extend(run.rows(EFFECTS)?.into_iter().map(|row| Average {
+            model: Model::Bem,
+            kind: row.kind,
+            pressure_mpa: row.pressure_mpa,
+            effect: Some(row.effect),
+            speed_mm_s: row.speed_mm_s,
+            shortest_wavelength_mm: row.shortest_wavelength_mm,
+            hysteretic: row.hysteretic,
+            contact_area_fraction: row.contact_area_fraction,
+            // Beside [adhesion], `error_estimate` is that of the total.
+            error: row.confidence_95.zip(row.discretisation_error).map(|(a, b)| a + b),
+        }));
+    }
+    Ok(all)
 }
 
 /// Why a run has nothing to compare with.
@@ -127,8 +196,8 @@ impl Computed {
     /// # Errors
     /// [`ComputedError`], which names the options that choose between several.
     pub fn read(run: &RunView, choice: Choice) -> Result<Self, ComputedError> {
-        let rows: Vec<FrictionRow> =
-            run.rows(FRICTION)?.into_iter().filter(|row| row.given == Given::Pressure).collect();
+        let mut rows = averages(run)?;
+        rows.retain(|row| row.effect == choice.effect);
         if rows.is_empty() {
             return Err(ComputedError::NoPressure);
         }
@@ -155,21 +224,42 @@ impl Computed {
         let [first, .., last] = &rows[..] else {
             return Err(ComputedError::TooFewSpeeds { count: rows.len() });
         };
-        let curve = |value: fn(&FrictionRow) -> f64| {
+        let over_speed = |values: Vec<f64>| {
             let speeds = rows.iter().map(|row| row.speed_mm_s.ln()).collect();
-            CubicHermite::monotone_parabolas(speeds, rows.iter().map(value).collect())
+            CubicHermite::monotone_parabolas(speeds, values)
         };
+        let curve = |value: fn(&Average) -> f64| over_speed(rows.iter().map(value).collect());
+        let errors: Option<Vec<f64>> = rows.iter().map(|row| row.error).collect();
+        let areas = Areas::read(run, first)?;
+        let area_errors: Option<Vec<f64>> =
+            rows.iter().map(|row| areas.relative_error(row)).collect();
         Ok(Self {
             model,
             kind: first.kind,
             pressure_mpa: first.pressure_mpa,
             shortest_wavelength_mm: first.shortest_wavelength_mm,
             speeds_mm_s: [first.speed_mm_s, last.speed_mm_s],
-            friction: curve(|row| row.mean),
+            friction: curve(|row| row.hysteretic),
             ln_area: curve(|row| row.contact_area_fraction.ln()),
-            error: curve(|row| row.error_estimate.unwrap_or(0.0)),
-            errors_known: rows.iter().all(|row| row.error_estimate.is_some()),
+            error: errors.map(over_speed),
+            relative_area_error: area_errors.map(over_speed),
         })
+    }
+
+    /// What a run has at given pressures, in the order of its table.
+    ///
+    /// # Errors
+    /// [`ComputedError::Artifact`].
+    pub fn available(run: &RunView) -> Result<Vec<Available>, ComputedError> {
+        let mut found: Vec<Available> = Vec::new();
+        for row in averages(run)? {
+            let Average { model, kind, pressure_mpa, effect, .. } = row;
+            let new = Available { model, kind, pressure_mpa, effect };
+            if !found.contains(&new) {
+                found.push(new);
+            }
+        }
+        Ok(found)
     }
 
     /// At a speed in mm/s, interpolated in its logarithm. `shifted` tells the message that the speed is that of another
@@ -192,20 +282,76 @@ impl Computed {
         Ok(ComputedAt {
             hysteretic: self.friction.at(at),
             contact_area_fraction: self.ln_area.at(at).exp(),
-            error: self.errors_known.then(|| self.error.at(at)),
+            error: self.error.as_ref().map(|error| error.at(at)),
+            relative_area_error: self.relative_area_error.as_ref().map(|error| error.at(at)),
         })
+    }
+}
+
+/// Contact areas of every surface of one kind at given pressures.
+struct Areas {
+    values: Vec<FrictionAt>,
+    /// The window of every surface of one.
+    window_of: BTreeMap<u32, String>,
+}
+
+impl Areas {
+    /// The areas behind an average: none where the model has none of its own.
+    fn read(run: &RunView, of: &Average) -> Result<Self, ArtifactError> {
+        let mut values: Vec<FrictionAt> = if let Some(effect) = of.effect {
+            let rows = run.rows(CONTACTS)?;
+            rows.iter().filter(|row| row.effect == effect).map(FrictionAt::from).collect()
+        } else if !matches!(of.model, Model::Bem | Model::Hybrid) {
+            Vec::new()
+        } else if of.kind.method.is_areal() {
+            let rows = run.rows(AREAL_CURVES)?;
+            // One direction is that of the tables: the first.
+            let first = rows.first().map(|row| row.angle_deg);
+            rows.iter().filter(|row| Some(row.angle_deg) == first).map(FrictionAt::from).collect()
+        } else {
+            run.rows(CURVES)?.iter().map(FrictionAt::from).collect()
+        };
+        values.retain(|value| value.curve.kind == of.kind && value.given == Given::Pressure);
+        let mut window_of = BTreeMap::new();
+        if of.kind.method.of_a_window() && !of.kind.method.is_areal() {
+            let rows = run.rows(PROFILES)?.into_iter().filter(|row| row.kind == of.kind);
+            window_of = rows.map(|row| (row.realisation, row.window)).collect();
+        }
+        Ok(Self { values, window_of })
+    }
+
+    /// The 95 % interval of the mean area and its mean error by the grid, relative. Draws of one window count once.
+    fn relative_error(&self, row: &Average) -> Option<f64> {
+        let own = self.values.iter().filter(|value| {
+            value.curve.speed_mm_s == row.speed_mm_s
+                && (value.pressure_mpa / row.pressure_mpa - 1.0).abs() < SAME_PRESSURE
+        });
+        let mut by_window: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+        let (mut grid, mut count) = (0.0, 0.0);
+        for value in own {
+            let realisation = value.curve.realisation;
+            let window = self.window_of.get(&realisation).cloned();
+            let window = window.unwrap_or_else(|| realisation.to_string());
+            by_window.entry(window).or_default().push(value.contact_area_fraction);
+            grid += value.relative_area_error?;
+            count += 1.0;
+        }
+        let means: Vec<f64> = by_window.values().map(|own| MeanEstimate::of(own).mean).collect();
+        let estimate = MeanEstimate::of(&means);
+        let error = estimate.confidence_95 / estimate.mean + grid / count;
+        error.is_finite().then_some(error)
     }
 }
 
 /// The rows of one value of a property: the one asked for, or the only one there is.
 fn of<T: Copy + PartialEq + std::fmt::Display>(
-    rows: Vec<FrictionRow>,
+    rows: Vec<Average>,
     what: &'static str,
     option: &'static str,
     asked: Option<T>,
-    property: impl Fn(&FrictionRow) -> T,
+    property: impl Fn(&Average) -> T,
     same: impl Fn(&T, &T) -> bool,
-) -> Result<Vec<FrictionRow>, ComputedError> {
+) -> Result<Vec<Average>, ComputedError> {
     let mut found: Vec<T> = Vec::new();
     for row in &rows {
         let value = property(row);

@@ -42,7 +42,7 @@ fn key(violation: &InvalidRecipe) -> Option<String> {
         InvalidRecipe::MapConditioning(_) => "ingest.maps",
         InvalidRecipe::SeveralCases { .. } | InvalidRecipe::SweepOfSinusoid => "sweep",
         InvalidRecipe::Missing { key, .. } => *key,
-        InvalidRecipe::MissingSection { .. } => return None,
+        InvalidRecipe::MissingSection { .. } | InvalidRecipe::SpectrumAlone => return None,
     };
     Some(key.to_owned())
 }

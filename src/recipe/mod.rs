@@ -5,13 +5,16 @@
 //! | `error` | what can be wrong with a recipe |
 //! | `hints` | where a mistake stands in a recipe, and what was typed there |
 //! | `sweep` | section `[sweep]`: lists in place of single values, and the cases that they make |
+//! | `validation` | section `[validation]`: measured friction that the recipe is held against |
 
 mod error;
 mod hints;
 mod sweep;
+mod validation;
 
 pub use error::RecipeError;
 pub use sweep::{Case, Specimen, Sweep};
+pub use validation::{Spectrum, Stress, Validation};
 
 use crate::contact::refine::{TOLERANCES, TOLERANCES_IN_WORDS};
 use crate::files::{self, TomlError};
@@ -92,6 +95,9 @@ pub struct Recipe {
     /// Shear stress of the contact area; with it, the tables have the total friction beside the hysteresis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adhesion: Option<Adhesion>,
+    /// Measured friction, for `asperity validate`; no stage reads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validation: Option<Validation>,
     /// The study of one sine wave under three models, in place of all other sections.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sinusoid: Option<Sinusoid>,
@@ -211,7 +217,7 @@ impl Recipe {
 
     /// Every file that the recipe names.
     fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let Self { ingest, bem, sinusoid, tables, sweep, .. } = self;
+        let Self { ingest, bem, sinusoid, tables, sweep, validation, .. } = self;
         let corrections = tables.published_corrections.iter_mut().map(|table| &mut table.file);
         ingest
             .iter_mut()
@@ -221,6 +227,7 @@ impl Recipe {
             .chain(tables.published.iter_mut().map(|table| &mut table.file))
             .chain(corrections)
             .chain(sweep.iter_mut().flat_map(Sweep::paths_mut))
+            .chain(validation.iter_mut().flat_map(Validation::paths_mut))
             // A rubber may be left to the sweep.
             .filter(|path| !path.as_os_str().is_empty())
     }
@@ -251,6 +258,7 @@ impl Recipe {
             ("multilevel", self.multilevel.is_some()),
             ("tables", self.tables != Tables::default()),
             ("adhesion", self.adhesion.is_some()),
+            ("validation", self.validation.is_some()),
             ("sweep", self.sweep.is_some()),
         ];
         match others.into_iter().find(|(_, present)| *present) {
@@ -261,6 +269,9 @@ impl Recipe {
 
     fn chain(&self) -> Result<Chain<'_>, InvalidRecipe> {
         let missing = |section| InvalidRecipe::MissingSection { section };
+        if self.is_spectrum_alone() {
+            return Err(InvalidRecipe::SpectrumAlone);
+        }
         if self.hybrid.is_some() && self.micro.is_none() {
             return Err(InvalidRecipe::HybridWithoutMicro);
         }
@@ -287,10 +298,22 @@ impl Recipe {
             // All cases are checked by what they have in common.
             return self.cases()?.first().map_or(Ok(()), |case| case.recipe.check());
         }
+        if let (Some(validation), Some(bem)) = (&self.validation, &self.bem) {
+            validation.check(&bem.pressures_mpa)?;
+            if self.is_spectrum_alone() {
+                return bem.check();
+            }
+        }
         match self.job()? {
             Job::Chain(chain) => chain.check(),
             Job::Sinusoid(sinusoid) => sinusoid.check(),
         }
+    }
+
+    /// Whether the recipe has a spectrum for `asperity validate` in place of scans or waves, and no stage to run.
+    pub fn is_spectrum_alone(&self) -> bool {
+        let spectrum = self.validation.as_ref().is_some_and(|own| own.spectrum.is_some());
+        spectrum && self.ingest.is_none() && self.approximate.is_none() && self.realise.is_none()
     }
 }
 
@@ -342,7 +365,7 @@ impl Chain<'_> {
         })?;
         if let Some(feedback) = self.feedback {
             let shear = self.adhesion.and_then(|adhesion| adhesion.shear_law().ok());
-            feedback.check(self.bem, shear.as_ref())?;
+            feedback.check(self.bem, &self.realise.methods, shear.as_ref())?;
         }
         let limit = self.realise.most_realisations.unwrap_or(0);
         require(

@@ -29,4 +29,5 @@ pub use long_tables::{long_table, values_table};
 pub use read::ReportError;
 pub use sinusoid::Study;
 pub use spreadsheet::workbook;
+pub(crate) use tables::significant;
 pub use tables::{FrictionTable, comparison_markdown, friction_tables, latex, markdown};

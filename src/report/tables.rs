@@ -41,7 +41,7 @@ pub fn friction_tables(rows: &[FrictionRow]) -> Vec<FrictionTable> {
 }
 
 /// A number with four significant digits.
-pub(super) fn significant(value: f64) -> String {
+pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }

@@ -29,6 +29,7 @@ mod solve_soft;
 mod start;
 mod synth;
 mod theory;
+mod validate;
 
 use outcome::Outcome;
 use std::path::{Path, PathBuf};

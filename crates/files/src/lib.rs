@@ -4,12 +4,15 @@
 //! |---|---|
 //! | [`os`] | what is different on another operating system |
 //! | [`name`] | names and paths as text without loss |
+//! | `located` | texts of numbers, with the place of what is wrong |
 //! | `toml_error` | mistakes in TOML with line and nearest key |
 
+mod located;
 pub mod name;
 pub mod os;
 mod toml_error;
 
+pub use located::{Located, read_located};
 pub use toml_error::{TomlError, nearest};
 
 use std::fs::File;

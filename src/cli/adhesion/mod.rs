@@ -7,9 +7,8 @@ use super::output::{json, note, print, refuse_existing, write_file};
 use super::solve::refuse_to_overwrite;
 use super::{CliError, run_folder, values};
 use asperity::interface::{FittedShear, Fixed, MeasuredFriction, fit_shear};
-use asperity::measurement::{Choice, Computed, MeasuredFile, read_measured};
+use asperity::measurement::{Choice, Computed, MeasuredFile, Temperatures, beside, read_measured};
 use asperity::recipe::Recipe;
-use asperity::rubber::{TemperatureDependence, read_rubber_data};
 use asperity::stages::realise::{Method, SurfaceKind};
 use asperity::stages::tables::Model;
 use asperity::units::Units;
@@ -92,22 +91,12 @@ impl Adhesion {
     }
 }
 
-/// The temperatures of a run and of what was measured.
-struct Temperatures {
-    /// That of the run in °C.
-    run_c: Option<f64>,
-    /// Those of the measurements in °C.
-    measured_c: Vec<f64>,
-    /// How the rubber of the run shifts, where temperatures differ.
-    rubber: Option<TemperatureDependence>,
-}
-
 impl Fit {
     fn run(&self, quiet: bool) -> Result<(), CliError> {
         refuse_existing(self.to.as_deref(), self.force)?;
         refuse_to_overwrite(self.to.as_deref(), "--to", &[Some(&self.measured)])?;
         self.refuse_inside_the_run()?;
-        let file = read_measured(&self.measured)?;
+        let file = read_measured(&self.measured, &[])?;
         let view = run_folder::view_of_case(&self.run)?;
         let last_run = LastRun::read(&self.run, quiet);
         if let Some(doubt) = last_run.as_ref().and_then(|last| last.doubt(&self.run, "tables")) {
@@ -117,9 +106,14 @@ impl Fit {
         self.check_pressures(&file, &computed)?;
         let recipe = last_run.and_then(|last| last.recipe_of(&self.run));
         let temperatures = self.temperatures(&file, recipe.as_ref())?;
-        let measured = beside(&file, &computed, &temperatures).map_err(|(line, error)| {
-            CliError::input(format!("{}, line {line}: {error}", self.measured.display()))
-        })?;
+        let of = |index: usize| {
+            let line = file.lines[index];
+            let found = beside(&file, index, &temperatures, &computed);
+            found.map(|found| found.measured).map_err(|error| {
+                CliError::input(format!("{}, line {line}: {error}", self.measured.display()))
+            })
+        };
+        let measured = (0..file.points.len()).map(of).collect::<Result<Vec<_>, _>>()?;
         let reference_c = self.reference(&temperatures)?;
         let fixed = Fixed {
             peak_speed: self.speed.map(Units::mm_to_m),
@@ -168,7 +162,7 @@ impl Fit {
             }
             (None, None) => None,
         };
-        Ok(Choice { model: self.model, kind, pressure_mpa: self.pressure })
+        Ok(Choice { model: self.model, kind, pressure_mpa: self.pressure, effect: None })
     }
 
     /// Measurements at another pressure than that of the run have another friction.
@@ -201,48 +195,14 @@ impl Fit {
         }
         let bem = recipe.and_then(|recipe| recipe.bem.as_ref());
         let run_c = bem.and_then(|bem| bem.temperature_c);
-        let own = |point: &asperity::measurement::MeasuredPoint| {
-            point.temperature_c.or(self.temperature_c).or(run_c)
-        };
-        let known: Vec<Option<f64>> = file.points.iter().map(own).collect();
-        let Some(first) = known.iter().flatten().next().copied() else {
-            // No temperature anywhere: all at that of the rubber as it stands.
-            return Ok(Temperatures { run_c, measured_c: vec![20.0; known.len()], rubber: None });
-        };
-        let Some(run_c) = run_c else {
-            return Err(CliError::input(format!(
-                "a measurement is at {first} °C and the run states no temperature: set bem.temperature_c in its recipe, and run it again"
-            )));
-        };
-        let measured_c: Vec<f64> = known.into_iter().map(|c| c.unwrap_or(run_c)).collect();
-        let rubber = if measured_c.iter().all(|c| *c == run_c) {
-            None
-        } else {
-            let path = bem
-                .map(|bem| &bem.rubber)
-                .ok_or_else(|| CliError::input("the recipe of the run names no rubber"))?;
-            let law = read_rubber_data(path)?.temperature.ok_or_else(|| {
-                let path = path.display();
-                CliError::input(format!(
-                    "measurements are not at the {run_c} °C of the run, and {path} has no [temperature] section to shift its friction by"
-                ))
-            })?;
-            if law.vertical.is_some() {
-                return Err(CliError::input(format!(
-                    "measurements are not at the {run_c} °C of the run, and the moduli of its rubber change with temperature beside their shift: \
-                     make a run at each temperature"
-                )));
-            }
-            Some(law)
-        };
-        Ok(Temperatures { run_c: Some(run_c), measured_c, rubber })
+        let rubber = bem.map(|bem| bem.rubber.clone()).unwrap_or_default();
+        Ok(Temperatures::new(file, self.temperature_c, run_c, &rubber)?)
     }
 
     /// T_0 of the law, if it shifts with temperature.
     fn reference(&self, temperatures: &Temperatures) -> Result<Option<f64>, CliError> {
-        let one = temperatures.measured_c.windows(2).all(|pair| pair[0] == pair[1]);
-        let shifts = !one || self.activation_ev.is_some();
-        match (self.reference_c, temperatures.run_c) {
+        let shifts = !temperatures.is_one() || self.activation_ev.is_some();
+        match (self.reference_c, temperatures.computed_c) {
             (Some(_), _) if !shifts => Err(CliError::input(
                 "--reference-c has no effect on measurements at one temperature: leave it out, or give --activation-ev",
             )),
@@ -254,39 +214,6 @@ impl Fit {
             _ => Ok(None),
         }
     }
-}
-
-/// What the run has beside every measurement; an error with the line.
-fn beside(
-    file: &MeasuredFile,
-    computed: &Computed,
-    temperatures: &Temperatures,
-) -> Result<Vec<MeasuredFriction>, (usize, String)> {
-    let mut measured = Vec::new();
-    let points = file.points.iter().zip(&file.lines).zip(&temperatures.measured_c);
-    for ((point, line), temperature_c) in points {
-        let failed = |error: String| (*line, error);
-        // Another temperature is another speed where the moduli only shift.
-        let factor = match (&temperatures.rubber, temperatures.run_c) {
-            (Some(law), Some(run_c)) => {
-                let of = |c: f64| law.shift_factor(c).map_err(|error| failed(error.to_string()));
-                of(*temperature_c)? / of(run_c)?
-            }
-            _ => 1.0,
-        };
-        let at = computed
-            .at(point.speed_mm_s * factor, factor != 1.0)
-            .map_err(|error| failed(error.to_string()))?;
-        measured.push(MeasuredFriction {
-            speed: point.speed_mm_s.mm_to_m(),
-            temperature_c: *temperature_c,
-            pressure: computed.pressure_mpa.mpa_to_pa(),
-            friction: point.friction,
-            hysteretic: at.hysteretic,
-            contact_area_fraction: at.contact_area_fraction,
-        });
-    }
-    Ok(measured)
 }
 
 /// What a reader of the law should know.

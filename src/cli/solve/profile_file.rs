@@ -1,6 +1,6 @@
 //! A periodic profile in a text file of two columns.
 
-use crate::cli::text_file::{self, Located};
+use asperity::files::{Located, read_located};
 use asperity::units::Units;
 use std::path::Path;
 
@@ -17,7 +17,7 @@ const SPACING_TOLERANCE: f64 = 0.05;
 /// # Errors
 /// A message with the file and the line.
 pub(super) fn read_profile(path: &Path, unit: LengthUnit) -> Result<Shape, String> {
-    text_file::read(path, |text| parse_profile(text, unit))
+    read_located(path, |text| parse_profile(text, unit))
 }
 
 /// One line of the file.

@@ -5,13 +5,11 @@
 //! | `flash` | the heat of the rubber |
 //! | `persson` | Persson's theory on an isotropic surface |
 //! | `predictions` | its predictions as a table, as CSV and as JSON |
-//! | `spectrum_file` | a spectrum in a text file of two columns |
 //! | `surface` | the isotropic surface: of a spectrum, a scan or a map |
 
 mod flash;
 mod persson;
 mod predictions;
-mod spectrum_file;
 mod surface;
 
 use super::CliError;

@@ -7,12 +7,12 @@ use asperity::units::Units;
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
-use super::spectrum_file::{
-    Conventions, DensityUnit, Sides, WavenumberUnit, density_unit, read_spectrum, wavenumber_unit,
-};
 use crate::cli::inspect::{ScanOptions, read_instrument};
 use crate::cli::solve::read_map;
 use crate::cli::{CliError, values};
+use asperity::measurement::{
+    Conventions, DensityUnit, Sides, WavenumberUnit, density_unit, read_spectrum, wavenumber_unit,
+};
 use asperity::scans::Described;
 use asperity::scans::description::LengthUnit;
 use asperity::scans::file::{Grid, ScanFile};
@@ -51,7 +51,7 @@ pub(super) struct SurfaceOptions {
     density_unit: Option<DensityUnit>,
     /// Whether the mean square height of a line is the integral of its density over positive wavenumbers (one), or twice
     /// that (two) [default: one].
-    #[arg(long, value_enum, value_name = "SIDES", requires = "spectrum")]
+    #[arg(long, value_name = "one|two", requires = "spectrum", value_parser = sides)]
     sides: Option<Sides>,
     /// Both columns of --spectrum are decadic logarithms.
     #[arg(long, requires = "spectrum")]
@@ -81,6 +81,14 @@ pub(super) struct SurfaceOptions {
     /// How the text of a scan or map is to be read.
     #[command(flatten)]
     text: ScanOptions,
+}
+
+fn sides(text: &str) -> Result<Sides, String> {
+    match text {
+        "one" => Ok(Sides::One),
+        "two" => Ok(Sides::Two),
+        _ => Err("choose one or two".into()),
+    }
 }
 
 /// An isotropic surface with the waves that are taken.
@@ -161,7 +169,7 @@ impl SurfaceOptions {
         let (Some(wavenumber), Some(density)) = (self.wavenumber_unit, self.density_unit) else {
             return Err(CliError::input("--spectrum needs --wavenumber-unit and --density-unit"));
         };
-        if self.sides.is_some() && density.dimensions == 2 {
+        if self.sides.is_some() && !density.of_line() {
             return Err(CliError::input(
                 "--sides is for the spectrum of a line; the unit of --density-unit is that of a surface: leave --sides out",
             ));
@@ -169,8 +177,8 @@ impl SurfaceOptions {
         let sides = self.sides.unwrap_or(Sides::One);
         let conventions = Conventions { wavenumber, density, sides, logarithms: self.logarithms };
         let (spectrum, left_out) = read_spectrum(path, conventions).map_err(CliError::input)?;
-        let kind = match (density.dimensions, sides) {
-            (2, _) => "two-dimensional spectrum",
+        let kind = match (density.of_line(), sides) {
+            (false, _) => "two-dimensional spectrum",
             (_, Sides::One) => "one-sided line spectrum",
             (_, Sides::Two) => "two-sided line spectrum",
         };

@@ -167,6 +167,9 @@ fn tasks<'a>(
     let speeds = feedback.speeds(bem);
     let all = surfaces
         .iter()
+        .filter(|surface| {
+            feedback.methods.is_empty() || feedback.methods.contains(&surface.kind.method)
+        })
         .flat_map(|surface| speeds.iter().map(move |&speed_mm_s| Task { surface, speed_mm_s }));
     all.filter(|task| taken(task.surface, task.speed_mm_s)).collect()
 }

@@ -5,6 +5,7 @@ use crate::heat::{Road, Thermal, ThermalSetting};
 use crate::interface::ShearLaw;
 use crate::requirement::{InvalidRecipe, require};
 use crate::stages::bem::{Bem, SPEEDS, SPEEDS_MM_S, no_repeats, some_speeds};
+use crate::stages::realise::Method;
 use crate::units::Units;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,9 @@ pub struct Feedback {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "some_speeds")]
     #[schemars(with = "crate::stages::bem::Speeds")]
     pub speeds_mm_s: Option<Vec<f64>>,
+    /// Surfaces whose contacts are solved, of `realise.methods`; all profiles if not set.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub methods: Vec<Method>,
     /// Heat of the contact, if it is to warm the rubber, whose file then needs a section `[temperature]`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heat: Option<Heat>,
@@ -76,12 +80,21 @@ impl Feedback {
     }
 
     /// Checks the section beside the others; `shear` is the law of `[adhesion]`, if the recipe has one.
-    pub(crate) fn check(&self, bem: &Bem, shear: Option<&ShearLaw>) -> Result<(), InvalidRecipe> {
+    pub(crate) fn check(
+        &self,
+        bem: &Bem,
+        realised: &[Method],
+        shear: Option<&ShearLaw>,
+    ) -> Result<(), InvalidRecipe> {
         if !self.strain && self.heat.is_none() {
             let advice =
                 "[feedback] asks for nothing: set strain = true, or give [feedback.heat], or both";
             return Err(InvalidRecipe::Missing { key: "feedback.strain", advice });
         }
+        let known =
+            self.methods.iter().all(|method| realised.contains(method) && !method.is_areal());
+        let names: Vec<&str> = self.methods.iter().map(|method| method.name()).collect();
+        require(known, "feedback.methods", names, "profiles of realise.methods")?;
         if bem.pressures_mpa.is_empty() {
             let advice =
                 "[feedback] solves contacts at given pressures, such as pressures_mpa = [0.3]";

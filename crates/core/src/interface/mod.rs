@@ -25,5 +25,5 @@ mod law;
 
 pub use coupling::{ShearCoupling, shear_coupling};
 pub use error::ShearError;
-pub use fit::{FittedShear, Fixed, Interval, MeasuredFriction, fit_shear};
+pub use fit::{FittedShear, Fixed, Interval, MeasuredFriction, PredictedFriction, fit_shear};
 pub use law::{Activation, GaussianShear, ShearLaw, ShearTable};

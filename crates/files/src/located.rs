@@ -1,22 +1,21 @@
 //! Text files of numbers: read as a whole, with the place of what is wrong in the message.
 
-use asperity::files;
 use std::path::Path;
 
 /// A problem and its line, counted from 1, if it has one.
-pub(super) type Located = (Option<usize>, String);
+pub type Located = (Option<usize>, String);
 
 /// Reads a text and parses it.
 ///
 /// # Errors
 /// A message with the file and the line.
-pub(super) fn read<T>(
+pub fn read_located<T>(
     path: &Path,
     parse: impl FnOnce(&str) -> Result<T, Located>,
 ) -> Result<T, String> {
     let in_file = |problem: String| format!("{}: {problem}", path.display());
-    let bytes = files::read(path, files::LARGEST_NUMBERS)
-        .map_err(|error| in_file(format!("cannot be read: {error}{}", files::advice(&error))))?;
+    let bytes = crate::read(path, crate::LARGEST_NUMBERS)
+        .map_err(|error| in_file(format!("cannot be read: {error}{}", crate::advice(&error))))?;
     let text = String::from_utf8(bytes).map_err(|_| in_file("is not UTF-8 text".into()))?;
     parse(&text).map_err(|(line, problem)| match line {
         Some(line) => format!("{}, line {line}: {problem}", path.display()),

@@ -1,14 +1,15 @@
-//! A spectrum in a text file of two columns, wavenumber and density.
+//! A measured power spectrum: a text file of two columns, wavenumber and density.
 
-use crate::cli::text_file::{self, Located};
-use crate::cli::values;
-use asperity::surface::spectrum::IsotropicSpectrum;
+use crate::files::{Located, read_located};
+use crate::surface::spectrum::IsotropicSpectrum;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Unit of the wavenumbers of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct WavenumberUnit {
+pub struct WavenumberUnit {
     /// What one of it is in rad/m or 1/m.
     per_m: f64,
     /// Whether it counts waves, 1/λ, instead of 2 π / λ.
@@ -17,16 +18,17 @@ pub(super) struct WavenumberUnit {
 
 /// Unit of the densities of a file, which tells what they belong to: the plane (m⁴) or a line (m³).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct DensityUnit {
+pub struct DensityUnit {
     /// What its unit of length is in m.
     metre: f64,
     /// Directions of the wavenumbers: 2 of the plane, 1 of a line.
-    pub(super) dimensions: i32,
+    dimensions: i32,
 }
 
 /// Densities at positive wavenumbers of a line, or at those of both signs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Sides {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Sides {
     /// The mean square height is the integral over positive wavenumbers.
     One,
     /// The mean square height is twice the integral over positive wavenumbers.
@@ -34,7 +36,10 @@ pub(super) enum Sides {
 }
 
 /// `rad/m`, `rad/mm`, `rad/um`, `1/m`, `1/mm` or `1/um`.
-pub(super) fn wavenumber_unit(text: &str) -> Result<WavenumberUnit, String> {
+///
+/// # Errors
+/// What there is to choose from.
+pub fn wavenumber_unit(text: &str) -> Result<WavenumberUnit, String> {
     let choose = "choose rad/m, rad/mm or rad/um for q = 2 pi / wavelength, 1/m, 1/mm or 1/um for 1 / wavelength";
     let (count, length) = text.split_once('/').ok_or(choose)?;
     let per_m = match length {
@@ -52,7 +57,10 @@ pub(super) fn wavenumber_unit(text: &str) -> Result<WavenumberUnit, String> {
 }
 
 /// `m4`, `mm4`, `um4`, `nm4`, `m3`, `mm3`, `um3` or `nm3`.
-pub(super) fn density_unit(text: &str) -> Result<DensityUnit, String> {
+///
+/// # Errors
+/// What there is to choose from.
+pub fn density_unit(text: &str) -> Result<DensityUnit, String> {
     let choose = "choose m4, mm4, um4 or nm4 for the spectrum of a surface, m3, mm3, um3 or nm3 for that of a line across it";
     let (length, power) = text.split_at_checked(text.len().saturating_sub(1)).ok_or(choose)?;
     let metre = match length {
@@ -72,26 +80,29 @@ pub(super) fn density_unit(text: &str) -> Result<DensityUnit, String> {
 
 /// How the columns of a file are to be understood.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Conventions {
+pub struct Conventions {
+    /// Unit of the wavenumbers.
     pub wavenumber: WavenumberUnit,
+    /// Unit of the densities.
     pub density: DensityUnit,
+    /// Of the spectrum of a line; without effect on that of the plane.
     pub sides: Sides,
     /// Both columns are decadic logarithms.
     pub logarithms: bool,
 }
 
 /// A spectrum, and the number of points that have no density over the plane.
-pub(super) type Found = (IsotropicSpectrum, usize);
+pub type FoundSpectrum = (IsotropicSpectrum, usize);
 
 /// Reads a spectrum.
 ///
 /// # Errors
 /// A message with the file and the line.
-pub(super) fn read_spectrum(path: &Path, conventions: Conventions) -> Result<Found, String> {
-    text_file::read(path, |text| parse_spectrum(text, conventions))
+pub fn read_spectrum(path: &Path, conventions: Conventions) -> Result<FoundSpectrum, String> {
+    read_located(path, |text| parse_spectrum(text, conventions))
 }
 
-fn parse_spectrum(text: &str, conventions: Conventions) -> Result<Found, Located> {
+fn parse_spectrum(text: &str, conventions: Conventions) -> Result<FoundSpectrum, Located> {
     let (mut wavenumbers, mut densities) = (Vec::new(), Vec::new());
     for (index, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let data = line.split('#').next().unwrap_or_default();
@@ -121,6 +132,14 @@ fn parse_spectrum(text: &str, conventions: Conventions) -> Result<Found, Located
     .map_err(|error| (None, error.to_string()))
 }
 
+fn finite(cell: &str) -> Result<f64, String> {
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("`{cell}` is not a finite number")),
+        Err(_) => Err(format!("`{cell}` is not a number")),
+    }
+}
+
 /// Wavenumber and density, both positive.
 fn parse_point(data: &str, logarithms: bool) -> Result<[f64; 2], String> {
     // Blanks around a comma or semicolon are part of the separator; between two separators is an empty cell.
@@ -138,18 +157,24 @@ fn parse_point(data: &str, logarithms: bool) -> Result<[f64; 2], String> {
         ));
     };
     let number = |name: &str, cell: &str| -> Result<f64, String> {
-        let value = values::finite(cell)
+        let value = finite(cell)
             .map_err(|problem| format!("{name}: {problem}; start lines of text with #"))?;
         let value = if logarithms { 10_f64.powf(value) } else { value };
         if value > 0.0 && value.is_finite() {
             return Ok(value);
         }
         Err(format!(
-            "{name} is {value}, it must be positive: leave the point out, or give --logarithms if the columns are decadic \
-             logarithms"
+            "{name} is {value}, it must be positive: leave the point out; are the columns decadic logarithms? (--logarithms, or logarithms = true)"
         ))
     };
     Ok([number("wavenumber", wavenumber)?, number("density", density)?])
+}
+
+impl DensityUnit {
+    /// Whether the densities are those of a line and not of the plane.
+    pub fn of_line(self) -> bool {
+        self.dimensions == 1
+    }
 }
 
 impl WavenumberUnit {
