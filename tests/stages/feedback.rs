@@ -14,7 +14,7 @@ use asperity::rubber::payne::elongation_of_tensor_shear;
 use asperity::rubber::read_rubber_at;
 use asperity::stages::bem::{CURVES, REALISATIONS};
 use asperity::stages::feedback::{self, CONTACTS, ContactRow, UNSOLVED};
-use asperity::stages::realise::read_surfaces;
+use asperity::stages::realise::{Method, read_surfaces};
 use asperity::stages::tables::{EFFECTS, Effect, FRICTION};
 use asperity::surface::wave;
 
@@ -280,81 +280,83 @@ fn sines_that_are_drawn_for_an_accuracy_are_those_of_bem() {
 }
 
 #[test]
+fn only_the_surfaces_that_are_named_are_solved() {
+    let campaign = campaign();
+    let all = "methods = [\"measured\", \"sines\"]\ndirections = [\"forward\", \"backward\"]\nperiodic = \"blend\"\n\
+         waves = [2]\nrealisations = 1\nseed = 1";
+    campaign.edit("recipe.toml", "methods = [\"measured\"]", all);
+    let (_, heat) = SECTION.split_once("[feedback.heat]").unwrap();
+    campaign.edit("recipe.toml", &format!("[feedback.heat]{heat}"), "");
+    campaign.edit("recipe.toml", "strain = true", "strain = true\nmethods = [\"measured\"]");
+    let out = campaign.path("out");
+    run(&recipe(&campaign), &out);
+    let contacts = RunView::of(&out).rows(CONTACTS).unwrap();
+    let count = |method| contacts.iter().filter(|row| row.kind.method == method).count();
+    // Three profiles, two speeds, cold and soft, in each direction.
+    let found = [Method::Measured, Method::MeasuredBackward, Method::Sines].map(count);
+    assert_eq!(found, [12, 12, 0]);
+}
+
+#[test]
 fn recipes_that_do_not_hold_are_named() {
     let campaign = campaign();
-    let text = campaign.read("recipe.toml") + ADHESION;
-    let refused = |from: &str, to: &str| {
-        assert_eq!(text.matches(from).count(), 1, "{from}");
-        let changed = text.replace(from, to);
-        Recipe::parse(&changed, &campaign.path("recipe.toml")).unwrap_err().to_string()
-    };
-    let heat = &SECTION[SECTION.find("[feedback.heat]").unwrap()..];
+    let text = campaign.read("recipe.toml");
     let cases = [
+        (SECTION, "\n[feedback]\n", "feedback.strain is missing: [feedback] asks for nothing"),
         (
-            format!("strain = true\n\n{heat}"),
-            "",
-            "feedback.strain is missing: [feedback] asks for nothing",
-        ),
-        (
-            "area_fractions = []\npressures_mpa = [0.05]".into(),
+            "area_fractions = []\npressures_mpa = [0.05]",
             "area_fractions = [0.05]",
             "bem.pressures_mpa is missing",
         ),
-        ("temperature_c = 25.0".into(), "", "bem.temperature_c is missing: [feedback.heat]"),
+        ("temperature_c = 25.0", "", "bem.temperature_c is missing: [feedback.heat]"),
         (
-            "strain = true".into(),
+            "strain = true",
             "strain = true\nspeeds_mm_s = [1.0, 1.0]",
             "feedback.speeds_mm_s = [1.0, 1.0]: must be",
         ),
-        ("sliding_time_s = 0.02".into(), "", "feedback.heat.sliding_time_s is missing"),
         (
-            "sliding_time_s = 0.02".into(),
+            "strain = true",
+            "strain = true\nmethods = [\"sines\"]",
+            "feedback.methods = [\"sines\"]: must be profiles of realise.methods",
+        ),
+        ("sliding_time_s = 0.02", "", "feedback.heat.sliding_time_s is missing"),
+        (
+            "sliding_time_s = 0.02",
             "sliding_time_s = 0.02\nsliding_distance_mm = 20",
             "feedback.heat.sliding_time_s = 0.02: must be left out beside sliding_distance_mm",
         ),
+        ("time_s = 0.02", "time_s = -1", "feedback.heat.sliding_time_s = -1: must be from"),
+        ("= 0.3\ndensity", "= 300\ndensity", "feedback.heat.conductivity_w_mk = 300: must be"),
+        ("m3 = 1150", "m3 = 1.15", "density_kg_m3 = 1.15: must be from 100 to 5000 kg/m³"),
+        ("kgk = 1500", "kgk = 1.5", "feedback.heat.heat_capacity_j_kgk = 1.5: must be"),
         (
-            "sliding_time_s = 0.02".into(),
-            "sliding_time_s = -1",
-            "sliding_time_s = -1: must be from",
-        ),
-        (
-            "= 0.3\ndensity".into(),
-            "= 300\ndensity",
-            "feedback.heat.conductivity_w_mk = 300: must be",
-        ),
-        (
-            "kg_m3 = 1150".into(),
-            "kg_m3 = 1.15",
-            "feedback.heat.density_kg_m3 = 1.15: must be from 100 to 5000 kg/m³",
-        ),
-        ("kgk = 1500".into(), "kgk = 1.5", "feedback.heat.heat_capacity_j_kgk = 1.5: must be"),
-        (
-            "sliding_time_s = 0.02".into(),
+            "sliding_time_s = 0.02",
             "sliding_time_s = 0.02\nroad = { conductivity_w_mk = 2.5, density_kg_m3 = 2.7, heat_capacity_j_kgk = 850 }",
             "feedback.heat.road.density_kg_m3 = 2.7: must be",
         ),
-        ("kgk = 1500".into(), "kgK = 1500", "heat_capacity_j_kgk"),
+        ("kgk = 1500", "kgK = 1500", "heat_capacity_j_kgk"),
         (
-            "methods = [\"measured\"]".into(),
-            "methods = [\"isotropic\"]\nseed = 1",
+            "methods = [\"measured\"]",
+            "methods = [\"isotropic\"]\nseed = 1\nareal_realisations = 1\nisotropic_period_mm = 8.0",
             "feedback = a section: must be",
         ),
-        (
-            "law = \"gaussian\"\nshear_mpa = 1.5\nspeed_mm_s = 6.0\nwidth = 0.1".into(),
-            "law = \"table\"\npoints = [[1.0, 1.0], [2000.0, 2.0]]",
-            "",
-        ),
     ];
-    for (from, to, part) in cases.iter().filter(|(_, _, part)| !part.is_empty()) {
-        let message = refused(from, to);
+    for (from, to, part) in cases {
+        assert_eq!(text.matches(from).count(), 1, "{from}");
+        let path = campaign.path("recipe.toml");
+        let message = Recipe::parse(&text.replace(from, to), &path).unwrap_err().to_string();
         assert!(message.contains(part), "{to}: {message}");
     }
-    // A table of shear stresses must cover the speeds of the section.
-    let (from, to, _) = &cases[cases.len() - 1];
-    let table = text.replace(from, to);
+}
+
+#[test]
+fn a_table_of_shear_stresses_must_cover_the_speeds_of_the_section() {
+    let campaign = campaign();
+    let text = campaign.read("recipe.toml")
+        + "\n[adhesion]\nlaw = \"table\"\npoints = [[1.0, 1.0], [2000.0, 2.0]]\nshortest_wavelength_mm = 0.5\n";
     let path = campaign.path("recipe.toml");
-    Recipe::parse(&table, &path).unwrap();
-    let faster = table.replace("strain = true", "strain = true\nspeeds_mm_s = [5000.0]");
+    Recipe::parse(&text, &path).unwrap();
+    let faster = text.replace("strain = true", "strain = true\nspeeds_mm_s = [5000.0]");
     let message = Recipe::parse(&faster, &path).unwrap_err().to_string();
     assert!(message.contains("feedback.speeds_mm_s = [5000.0]: must be within"), "{message}");
 }

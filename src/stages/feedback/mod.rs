@@ -82,6 +82,9 @@ pub(crate) fn seconds(feedback: &Feedback, bem: &Bem, surface: &Surface) -> f64 
         (false, true) => SECONDS_PER_POINT_SOFT,
         (false, false) => 0.0,
     };
+    if !feedback.takes(surface.kind.method) {
+        return 0.0;
+    }
     let each: f64 = feedback.effects().into_iter().map(of_effect).sum();
     let contacts = feedback.speeds(bem).len() * bem.pressures_mpa.len();
     each * (contacts * GridRule::new(bem, surface).usual_points()) as f64
@@ -167,9 +170,7 @@ fn tasks<'a>(
     let speeds = feedback.speeds(bem);
     let all = surfaces
         .iter()
-        .filter(|surface| {
-            feedback.methods.is_empty() || feedback.methods.contains(&surface.kind.method)
-        })
+        .filter(|surface| feedback.takes(surface.kind.method))
         .flat_map(|surface| speeds.iter().map(move |&speed_mm_s| Task { surface, speed_mm_s }));
     all.filter(|task| taken(task.surface, task.speed_mm_s)).collect()
 }

@@ -21,7 +21,7 @@ pub struct Feedback {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "some_speeds")]
     #[schemars(with = "crate::stages::bem::Speeds")]
     pub speeds_mm_s: Option<Vec<f64>>,
-    /// Surfaces whose contacts are solved, of `realise.methods`; all profiles if not set.
+    /// Methods whose surfaces are solved, of those of `realise.methods`; all profiles if not set.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub methods: Vec<Method>,
     /// Heat of the contact, if it is to warm the rubber, whose file then needs a section `[temperature]`.
@@ -69,6 +69,15 @@ impl Feedback {
     /// The speeds in mm/s.
     pub fn speeds<'a>(&'a self, bem: &'a Bem) -> &'a [f64] {
         self.speeds_mm_s.as_deref().unwrap_or(&bem.speeds_mm_s)
+    }
+
+    /// Whether surfaces of a method are solved; measured ones in both directions.
+    pub(super) fn takes(&self, method: Method) -> bool {
+        let named = match method {
+            Method::MeasuredBackward => Method::Measured,
+            method => method,
+        };
+        self.methods.is_empty() || self.methods.contains(&named)
     }
 
     /// What is solved: cold for comparison, and all that is asked for.
