@@ -338,7 +338,7 @@ fn recipes_that_do_not_hold_are_named() {
         (
             "methods = [\"measured\"]",
             "methods = [\"isotropic\"]\nseed = 1\nareal_realisations = 1\nisotropic_period_mm = 8.0",
-            "feedback = a section: must be",
+            "must be left out where no profile is made: heat and softening are for profiles",
         ),
     ];
     for (from, to, part) in cases {
