@@ -21,6 +21,7 @@ mod rubber;
 mod rubber_files;
 mod rubber_sweeps;
 mod rubber_tables;
+mod slider;
 mod solve;
 mod solve_areal;
 mod solve_fem;

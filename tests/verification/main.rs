@@ -9,6 +9,7 @@ mod oracle;
 mod properties;
 mod robustness;
 mod scatter;
+mod slider;
 mod surfaces;
 mod thesis_table_5_3;
 mod thesis_table_a_7;

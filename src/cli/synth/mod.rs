@@ -1,8 +1,10 @@
 //! `asperity synth`: synthetic scans of asphalt.
 
 mod map;
+mod slider;
 
 use asperity::units::Units;
+pub(super) use slider::SliderOptions;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,11 +53,13 @@ pub(super) struct Synth {
     specimen: SpecimenOptions,
 }
 
-/// Other scans than of lines.
+/// Other surfaces than line scans of asphalt.
 #[derive(Debug, Subcommand)]
 enum Other {
     /// Write a synthetic height map instead.
     Map(Box<map::SynthMap>),
+    /// Write one period of hard sliders instead.
+    Slider(Box<slider::SynthSlider>),
 }
 
 /// Surfaces with defaults of their own.
@@ -249,8 +253,10 @@ fn impossible(error: SynthesisError) -> CliError {
 
 impl Synth {
     pub(super) fn run(&self, quiet: bool) -> Result<(), CliError> {
-        if let Some(Other::Map(map)) = &self.other {
-            return map.run(quiet);
+        match &self.other {
+            Some(Other::Map(map)) => return map.run(quiet),
+            Some(Other::Slider(slider)) => return slider.run(quiet),
+            None => {}
         }
         let Some(out) = &self.out else {
             return Err(CliError::input("give a folder for the scans as --out"));

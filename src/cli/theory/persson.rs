@@ -89,9 +89,9 @@ enum Stress {
 
 /// One speed in mm/s, or a range of them.
 #[derive(Debug, Clone, PartialEq)]
-struct Speeds(Vec<f64>);
+pub(super) struct Speeds(pub(super) Vec<f64>);
 
-fn speeds(text: &str) -> Result<Speeds, String> {
+pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
     let parts: Vec<&str> = text.split(':').collect();
     match parts[..] {
         [one] => Ok(Speeds(vec![values::positive(one)?])),

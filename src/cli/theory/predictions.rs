@@ -139,7 +139,10 @@ pub(super) fn flash_table(rows: &[FlashRow]) -> String {
     columns(header, rows.iter().map(cells))
 }
 
-fn columns<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+pub(super) fn columns<const N: usize>(
+    header: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> String {
     let lines: Vec<[String; N]> = [header.map(String::from)].into_iter().chain(rows).collect();
     let width = |column: usize| lines.iter().map(|line| line[column].len()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..N).map(width).collect();

@@ -15,6 +15,7 @@
 //! | [`map`] | heights over a plane: maps of instruments |
 //! | [`periodic`] | a scanned window as a periodic profile, and profiles with its spectrum |
 //! | [`synthesis`] | scans of a surface with known parameters |
+//! | [`slider`] | hard cylinders and triangles |
 //! | `table_3_1` | the sines of the published tables |
 
 pub mod condition;
@@ -33,6 +34,7 @@ pub mod resample;
 pub mod scan;
 pub mod self_affine;
 pub mod sine_fit;
+pub mod slider;
 pub mod spectrum;
 pub mod synthesis;
 pub mod texture;
@@ -50,6 +52,7 @@ pub use periodic::{Closure, PeriodicError, PeriodicProfile};
 pub use scan::{LineScan, RawScan};
 pub use self_affine::SelfAffineFit;
 pub use sine_fit::SineFit;
+pub use slider::{Slider, SliderError};
 pub use spectrum::PowerSpectrum;
 pub use synthesis::SyntheticAsphalt;
 pub use table_3_1::TABLE_3_1_MM;

@@ -6,6 +6,7 @@
 //! | [`Persson`] | diffusion of the pressure from the long waves to the short ones |
 //! | [`IsotropicPersson`] | the same on an isotropic surface with a continuous spectrum |
 //! | [`KlueppelHeinrich`] | a layer as thick as the mean penetration, strained as the profile is rough |
+//! | [`SliderTheory`] | dissipation under the elastic pressure of a cylinder or a triangle |
 //!
 //! Both theories were made for isotropic surfaces with a continuous spectrum. [`Persson`] and [`KlueppelHeinrich`] are
 //! for superposed sines in plane strain, sliding along them: integrals over the wavenumber become sums over the
@@ -14,6 +15,7 @@
 mod isotropic;
 mod klueppel_heinrich;
 mod persson;
+mod slider;
 
 pub use isotropic::{
     Diffusion, FlashPrediction, Heating, IsotropicPersson, IsotropicPrediction, PerssonError,
@@ -21,3 +23,4 @@ pub use isotropic::{
 };
 pub use klueppel_heinrich::KlueppelHeinrich;
 pub use persson::Persson;
+pub use slider::{SliderEstimate, SliderTheory};
