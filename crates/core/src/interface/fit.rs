@@ -462,7 +462,7 @@ mod tests {
             }
             let predicted = fit.predict(&exact).unwrap();
             let one_more = exact.friction + 0.01 * normal();
-            next += i32::from((predicted.friction - one_more).abs() <= predicted.half_width_95);
+            next += usize::from((predicted.friction - one_more).abs() <= predicted.half_width_95);
         }
         // 95 % of 400 sets have a standard deviation of 1.1 %.
         for count in held.into_iter().chain([next]) {
