@@ -244,7 +244,8 @@ impl Measurement<'_> {
     fn of_run(&self, run: &RunView, pressures: &[f64]) -> Result<Vec<Prediction>, ValidationError> {
         let available = Computed::available(run)?;
         let mut kinds: Vec<Available> = Vec::new();
-        for one in &available {
+        // A cold contact is that of the tables without [feedback].
+        for one in available.iter().filter(|one| one.effect != Some(Effect::Cold)) {
             let same = |known: &&Available| {
                 (known.model, known.kind, known.effect) == (one.model, one.kind, one.effect)
             };
