@@ -35,6 +35,7 @@
 //! | `threads` | the threads of a command |
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
+//! | `water` | pools that a rubber seals, and the film under a block |
 
 mod adhesion;
 mod compare;
@@ -66,6 +67,7 @@ mod theory;
 mod threads;
 mod values;
 mod verify;
+mod water;
 
 pub use error::CliError;
 
@@ -114,6 +116,8 @@ enum Command {
     /// Find the shear stress of the contact area.
     #[command(subcommand)]
     Adhesion(adhesion::Adhesion),
+    #[command(name = "water")]
+    Water(Box<water::WaterCommand>),
     Synth(synth::Synth),
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
@@ -142,6 +146,7 @@ impl Arguments {
             Command::Theory(command) => command.run(self.quiet),
             Command::Rubber(command) => command.run(self.quiet),
             Command::Adhesion(command) => command.run(self.quiet),
+            Command::Water(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),

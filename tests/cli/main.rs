@@ -30,6 +30,7 @@ mod solve_soft;
 mod start;
 mod synth;
 mod theory;
+mod water;
 
 use outcome::Outcome;
 use std::path::{Path, PathBuf};
