@@ -33,7 +33,7 @@
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
 //! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
-//! | [`water`] | squeeze-out of a film |
+//! | [`water`] | sealed pools, squeeze-out of a film |
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
 //! | [`numerics`] | mathematics without physics: Krylov, interpolation, statistics |
 //!

@@ -35,6 +35,7 @@
 //! | `validate` | measured friction beside what is computed for it |
 //! | `values` | parsers of single option values |
 //! | `verify` | whether the files of a run folder are unchanged |
+//! | `water` | pools that a rubber seals, and the film under a block |
 
 mod adhesion;
 mod compare;
@@ -66,6 +67,7 @@ mod threads;
 mod validate;
 mod values;
 mod verify;
+mod water;
 
 pub use error::CliError;
 
@@ -115,6 +117,8 @@ enum Command {
     #[command(subcommand)]
     Adhesion(adhesion::Adhesion),
     Validate(validate::Validate),
+    #[command(name = "water")]
+    Water(Box<water::WaterCommand>),
     Synth(synth::Synth),
     Inspect(inspect::Inspect),
     Convert(convert::Convert),
@@ -144,6 +148,7 @@ impl Arguments {
             Command::Rubber(command) => command.run(self.quiet),
             Command::Adhesion(command) => command.run(self.quiet),
             Command::Validate(command) => command.run(self.quiet),
+            Command::Water(command) => command.run(self.quiet),
             Command::Synth(command) => command.run(self.quiet),
             Command::Inspect(command) => command.run(),
             Command::Convert(command) => command.run(self.quiet),

@@ -31,6 +31,7 @@ mod start;
 mod synth;
 mod theory;
 mod validate;
+mod water;
 
 use outcome::Outcome;
 use std::path::{Path, PathBuf};

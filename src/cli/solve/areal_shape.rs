@@ -66,9 +66,16 @@ pub(super) struct ArealShapeOptions {
 
 /// A number for x, and one for y if that differs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Pair<T> {
+pub(in crate::cli) struct Pair<T> {
     x: T,
     y: Option<T>,
+}
+
+impl Pair<f64> {
+    /// Lengths in mm, in m.
+    pub(in crate::cli) fn metres(self) -> [Option<f64>; 2] {
+        [Some(self.x.mm_to_m()), self.y.map(Units::mm_to_m)]
+    }
 }
 
 /// One superposed sine.
@@ -144,7 +151,7 @@ impl ArealShapeOptions {
         &self,
         admit: impl Fn([usize; 2]) -> Result<(), CliError>,
     ) -> Result<ArealShape, CliError> {
-        let given = self.size_mm.map(|size| [Some(size.x.mm_to_m()), size.y.map(Units::mm_to_m)]);
+        let given = self.size_mm.map(Pair::metres);
         let Some(path) = &self.map else {
             if let Some(option) = self.text.given().first() {
                 return Err(CliError::input(format!(
@@ -158,28 +165,7 @@ impl ArealShapeOptions {
             return Ok(superpose(&self.modes, [length, width.unwrap_or(length)], points));
         };
         let mut map = read_map(path, self.map_unit, given, &self.text)?;
-        for n in map.points {
-            if !(LEAST_POINTS..=MOST_POINTS).contains(&n) {
-                let [nx, ny] = map.points;
-                return Err(CliError::input(format!(
-                    "{} has {nx} by {ny} points, a map needs {LEAST_POINTS} to {MOST_POINTS} along each direction",
-                    path.display()
-                )));
-            }
-        }
-        let [low, high] = [f64::min, f64::max]
-            .map(|least| map.heights.iter().copied().reduce(least).unwrap_or_default());
-        let longest = map.periods[0].max(map.periods[1]);
-        if high - low > MOST_HEIGHT * longest {
-            return Err(CliError::input(format!(
-                "{}: heights from {} to {} mm on a map of {} mm are no surface: check --map-unit, --size-mm, and numbers \
-                 that stand for missing points",
-                path.display(),
-                low.m_to_mm(),
-                high.m_to_mm(),
-                longest.m_to_mm()
-            )));
-        }
+        require_surface(path, &map)?;
         admit(if self.mirror { map.points.map(|n| 2 * n) } else { map.points })?;
         if self.mirror {
             map = mirrored(&map);
@@ -187,6 +173,36 @@ impl ArealShapeOptions {
         let warning = cliff(&map);
         Ok(ArealShape { map, modes: Vec::new(), warning })
     }
+}
+
+/// Refuses a map of too few or too many points, and one whose heights are no surface.
+///
+/// # Errors
+/// [`CliError::Input`] with the file.
+pub(in crate::cli) fn require_surface(path: &std::path::Path, map: &Map) -> Result<(), CliError> {
+    for n in map.points {
+        if !(LEAST_POINTS..=MOST_POINTS).contains(&n) {
+            let [nx, ny] = map.points;
+            return Err(CliError::input(format!(
+                "{} has {nx} by {ny} points, a map needs {LEAST_POINTS} to {MOST_POINTS} along each direction",
+                path.display()
+            )));
+        }
+    }
+    let [low, high] = [f64::min, f64::max]
+        .map(|least| map.heights.iter().copied().reduce(least).unwrap_or_default());
+    let longest = map.periods[0].max(map.periods[1]);
+    if high - low > MOST_HEIGHT * longest {
+        return Err(CliError::input(format!(
+            "{}: heights from {} to {} mm on a map of {} mm are no surface: check --map-unit, --size-mm, and numbers \
+             that stand for missing points",
+            path.display(),
+            low.m_to_mm(),
+            high.m_to_mm(),
+            longest.m_to_mm()
+        )));
+    }
+    Ok(())
 }
 
 /// Points along x and y for the modes.
@@ -240,7 +256,7 @@ fn superpose(modes: &[Mode], periods: [f64; 2], points: [usize; 2]) -> ArealShap
 }
 
 /// The map and its mirror images along x, y and both.
-fn mirrored(map: &Map) -> Map {
+pub(in crate::cli) fn mirrored(map: &Map) -> Map {
     let [nx, ny] = map.points;
     let fold = |k: usize, n: usize| if k < n { k } else { 2 * n - 1 - k };
     let places = (0..2 * ny).flat_map(|j| (0..2 * nx).map(move |i| (j, i)));
@@ -249,7 +265,7 @@ fn mirrored(map: &Map) -> Map {
 }
 
 /// A warning for a map that ends where it does not begin.
-fn cliff(map: &Map) -> Option<String> {
+pub(in crate::cli) fn cliff(map: &Map) -> Option<String> {
     let [nx, ny] = map.points;
     let height = |j: usize, i: usize| map.heights[j * nx + i];
     let largest =
@@ -287,7 +303,7 @@ fn cliff(map: &Map) -> Option<String> {
 /// Lengths in mm that are no mistake.
 const SIZES_MM: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-fn parse_size(text: &str) -> Result<Pair<f64>, String> {
+pub(in crate::cli) fn parse_size(text: &str) -> Result<Pair<f64>, String> {
     parse_pair(text, |part| match values::positive(part)? {
         mm if SIZES_MM.contains(&mm) => Ok(mm),
         _ => Err(format!("{} is not from 1e-6 to 1e6", part.trim())),

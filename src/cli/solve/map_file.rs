@@ -36,6 +36,28 @@ pub(in crate::cli) fn read_map(
     size: Option<[Option<f64>; 2]>,
     text: &ScanOptions,
 ) -> Result<Map, CliError> {
+    let map = read_map_with_gaps(path, unit, size, text)?;
+    let missing = map.heights.iter().filter(|z| z.is_nan()).count();
+    let Some(first) = map.heights.iter().position(|z| z.is_nan()) else { return Ok(map) };
+    Err(CliError::input(format!(
+        "{}: {missing} of {} heights are missing, the first in column {}, row {} (counted from 0): fill or cut them first",
+        path.display(),
+        map.heights.len(),
+        first % map.points[0],
+        first / map.points[0]
+    )))
+}
+
+/// As [`read_map`], with NaN where heights are missing.
+///
+/// # Errors
+/// As [`read_map`], but for missing heights.
+pub(in crate::cli) fn read_map_with_gaps(
+    path: &Path,
+    unit: Option<LengthUnit>,
+    size: Option<[Option<f64>; 2]>,
+    text: &ScanOptions,
+) -> Result<Map, CliError> {
     let in_file = |problem: String| CliError::input(format!("{}: {problem}", path.display()));
     let given = match (unit, size) {
         (Some(_), _) => Some("--map-unit"),
@@ -80,15 +102,6 @@ fn of_grid(scan: ScanFile) -> Result<Map, String> {
     let Grid::Map { columns, rows, spacing_x, spacing_y } = scan.grid else {
         return Err("holds a line, not a map: a recipe reads it (section [ingest])".into());
     };
-    let missing = scan.missing();
-    if let Some(first) = scan.heights.iter().position(|z| z.is_nan()) {
-        return Err(format!(
-            "{missing} of {} heights are missing, the first in column {}, row {} (counted from 0): fill or cut them first",
-            scan.heights.len(),
-            first % columns,
-            first / columns
-        ));
-    }
     Ok(Map {
         points: [columns, rows],
         periods: [spacing_x * columns as f64, spacing_y * rows as f64],

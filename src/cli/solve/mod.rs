@@ -37,7 +37,8 @@ use std::path::Path;
 use clap::Subcommand;
 
 use super::CliError;
-pub(super) use map_file::read_map;
+pub(super) use areal_shape::{Pair, cliff, mirrored, parse_size, require_surface};
+pub(super) use map_file::{Map, read_map, read_map_with_gaps};
 pub(super) use material::{Material, MaterialOptions};
 
 #[derive(Debug, Subcommand)]
