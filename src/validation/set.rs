@@ -85,7 +85,7 @@ pub enum ValidationError {
         /// File of the measurement.
         path: PathBuf,
         /// What is wrong.
-        source: TemperatureError,
+        source: Box<TemperatureError>,
     },
     /// A measurement that the run does not cover.
     #[error("{}, line {line}: {source}", .path.display())]
@@ -95,7 +95,7 @@ pub enum ValidationError {
         /// Line of the measurement.
         line: usize,
         /// What is wrong.
-        source: BesideError,
+        source: Box<BesideError>,
     },
     /// A pressure that is not known, or that the run does not have.
     #[error("{}, line {line}: {problem}", .path.display())]
@@ -122,7 +122,7 @@ pub enum ValidationError {
         /// File of the spectrum.
         path: PathBuf,
         /// What is wrong.
-        source: PerssonError,
+        source: Box<PerssonError>,
     },
     /// A law that is none.
     #[error("section [adhesion]: {0}")]
@@ -168,8 +168,10 @@ impl Set {
         let path = validation.measured.clone();
         let stated =
             Temperatures::new(&file, validation.temperature_c, bem.temperature_c, &bem.rubber);
-        let temperatures =
-            stated.map_err(|source| ValidationError::Temperature { path: path.clone(), source })?;
+        let temperatures = stated.map_err(|source| ValidationError::Temperature {
+            path: path.clone(),
+            source: source.into(),
+        })?;
         let measurement = Measurement { validation, bem, file, temperatures };
         let pressures = measurement.pressures()?;
         let mut predictions =
@@ -281,7 +283,7 @@ impl Measurement<'_> {
                 values.push(found.map_err(|source| ValidationError::Beside {
                     path,
                     line,
-                    source,
+                    source: source.into(),
                 })?);
             }
             let shortest = at_pressure.iter().map(|computed| computed.shortest_wavelength_mm);
@@ -316,7 +318,10 @@ impl Measurement<'_> {
             diffusion: section.diffusion.into(),
             ..PerssonOptions::default()
         };
-        let named = |source| ValidationError::Theory { path: section.file.clone(), source };
+        let named = |source: PerssonError| ValidationError::Theory {
+            path: section.file.clone(),
+            source: source.into(),
+        };
         let mut values = Vec::new();
         for (index, pressure) in pressures.iter().enumerate() {
             let point = &self.file.points[index];

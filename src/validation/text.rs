@@ -28,8 +28,8 @@ impl Validated {
         let names = width(|result| result.label.to_string().chars().count(), 10);
         let _ = writeln!(
             text,
-            "{:<names$}  {:<10}  {:>6}  {:>8}  {}",
-            "prediction", "case", "rms", "in band", "fitted constants"
+            "{:<names$}  {:<10}  {:>6}  {:>8}  fitted constants",
+            "prediction", "case", "rms", "in band"
         );
         for result in &self.results {
             let band = match result.with_band {
@@ -94,20 +94,7 @@ fn laws(result: &Judged) -> String {
 
 fn points(result: &Judged) -> String {
     let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "{:>12}  {:>6}  {:>6}  {:>8}  {:>10}  {:>8}  {:>9}  {:>16}  {:>8}  {:>7}",
-        "mm/s",
-        "°C",
-        "MPa",
-        "Ac/A0",
-        "hysteretic",
-        "adhesive",
-        "predicted",
-        "95 % band",
-        "measured",
-        "misfit"
-    );
+    text += "        mm/s      °C     MPa     Ac/A0  hysteretic  adhesive  predicted         95 % band  measured   misfit\n";
     let mut set = "";
     for point in &result.points {
         if point.set != set {
