@@ -270,7 +270,7 @@ impl Computed {
     pub fn at(&self, speed_mm_s: f64, shifted: bool) -> Result<ComputedAt, ComputedError> {
         let [lowest, highest] = self.speeds_mm_s;
         // A speed that was typed with fewer digits than the other is still the end of the range.
-        let slack = 1.0 + 1e-6;
+        let slack = 1.0 + 1e-3;
         if !(speed_mm_s * slack >= lowest && speed_mm_s <= highest * slack) {
             return Err(ComputedError::OutsideSpeeds {
                 speed_mm_s,

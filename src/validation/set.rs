@@ -174,9 +174,11 @@ impl Set {
         })?;
         let measurement = Measurement { validation, bem, file, temperatures };
         let pressures = measurement.pressures()?;
-        let mut predictions =
-            run.map_or(Ok(Vec::new()), |run| measurement.of_run(run, &pressures))?;
         let mut left_out = Vec::new();
+        let mut predictions = match run {
+            Some(run) => measurement.of_run(run, &pressures, &mut left_out)?,
+            None => Vec::new(),
+        };
         if let Some(spectrum) = &validation.spectrum {
             match measurement.of_spectrum(spectrum, &pressures) {
                 Ok(prediction) => predictions.push(prediction),
@@ -242,8 +244,14 @@ impl Measurement<'_> {
         ValidationError::Pressure { path, line, problem }
     }
 
-    /// The predictions of a run, in the order of its tables.
-    fn of_run(&self, run: &RunView, pressures: &[f64]) -> Result<Vec<Prediction>, ValidationError> {
+    /// The predictions of a run, in the order of its tables. Those with an effect may lack a speed at which a contact has no
+    /// solution; they are left out then, and the reason is said.
+    fn of_run(
+        &self,
+        run: &RunView,
+        pressures: &[f64],
+        left_out: &mut Vec<String>,
+    ) -> Result<Vec<Prediction>, ValidationError> {
         let available = Computed::available(run)?;
         let mut kinds: Vec<Available> = Vec::new();
         // A cold contact is that of the tables without [feedback].
@@ -255,49 +263,73 @@ impl Measurement<'_> {
                 kinds.push(*one);
             }
         }
-        let prediction = |Available { model, kind, effect, .. }: &Available| {
-            let mut at_pressure: Vec<Computed> = Vec::new();
-            let mut values = Vec::new();
-            for (index, pressure) in pressures.iter().enumerate() {
-                let same = |own: f64| (own / pressure - 1.0).abs() < SAME_PRESSURE;
-                if !at_pressure.iter().any(|computed| same(computed.pressure_mpa)) {
-                    let there = available.iter().any(|own| same(own.pressure_mpa));
-                    if !there {
-                        return Err(self.pressure_problem(
-                            index,
-                            format!("the run has no friction at its pressure of {pressure} MPa: add it to bem.pressures_mpa"),
-                        ));
-                    }
-                    let choice = Choice {
-                        model: Some(*model),
-                        kind: Some(*kind),
-                        pressure_mpa: Some(*pressure),
-                        effect: *effect,
-                    };
-                    at_pressure.push(Computed::read(run, choice)?);
-                }
-                let computed = at_pressure.iter().find(|computed| same(computed.pressure_mpa));
-                let Some(computed) = computed else { continue };
-                let found = beside(&self.file, index, &self.temperatures, computed);
-                let (path, line) = (self.validation.measured.clone(), self.file.lines[index]);
-                values.push(found.map_err(|source| ValidationError::Beside {
-                    path,
-                    line,
-                    source: source.into(),
-                })?);
+        let mut predictions = Vec::new();
+        for one in &kinds {
+            let label = Label {
+                model: one.model.name().into(),
+                surfaces: one.kind.to_string(),
+                effect: one.effect.map_or("none", Effect::name).into(),
+            };
+            if one.effect.is_some_and(Effect::has_heat) && self.temperatures.differ() {
+                left_out.push(format!(
+                    "{label}: measurements are not at the temperature of the run, and heat does not shift with it: make a set of each"
+                ));
+                continue;
             }
-            let shortest = at_pressure.iter().map(|computed| computed.shortest_wavelength_mm);
-            Ok(Prediction {
-                label: Label {
-                    model: model.name().into(),
-                    surfaces: kind.to_string(),
-                    effect: effect.map_or("none", Effect::name).into(),
-                },
-                shortest_wavelength_mm: shortest.fold(f64::INFINITY, f64::min),
-                values,
-            })
-        };
-        kinds.iter().map(prediction).collect()
+            match self.prediction(run, one, &available, pressures) {
+                Ok((shortest_wavelength_mm, values)) => {
+                    predictions.push(Prediction { label, shortest_wavelength_mm, values });
+                }
+                Err(error @ ValidationError::Beside { .. }) if one.effect.is_some() => {
+                    left_out.push(format!("{label}: {error}"));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(predictions)
+    }
+
+    /// The shortest wavelength in mm of one prediction of a run, and its values.
+    fn prediction(
+        &self,
+        run: &RunView,
+        Available { model, kind, effect, .. }: &Available,
+        available: &[Available],
+        pressures: &[f64],
+    ) -> Result<(f64, Vec<Beside>), ValidationError> {
+        let mut at_pressure: Vec<Computed> = Vec::new();
+        let mut values = Vec::new();
+        for (index, pressure) in pressures.iter().enumerate() {
+            let same = |own: f64| (own / pressure - 1.0).abs() < SAME_PRESSURE;
+            let place = match at_pressure.iter().position(|computed| same(computed.pressure_mpa)) {
+                Some(place) => place,
+                None if !available.iter().any(|own| same(own.pressure_mpa)) => {
+                    return Err(self.pressure_problem(
+                        index,
+                        format!("the run has no friction at its pressure of {pressure} MPa: add it to bem.pressures_mpa"),
+                    ));
+                }
+                None => {
+                    at_pressure.push(Computed::read(
+                        run,
+                        Choice {
+                            model: Some(*model),
+                            kind: Some(*kind),
+                            pressure_mpa: Some(*pressure),
+                            effect: *effect,
+                        },
+                    )?);
+                    at_pressure.len() - 1
+                }
+            };
+            let found = beside(&self.file, index, &self.temperatures, &at_pressure[place]);
+            let (path, line) = (self.validation.measured.clone(), self.file.lines[index]);
+            let named =
+                |source: BesideError| ValidationError::Beside { path, line, source: source.into() };
+            values.push(found.map_err(named)?);
+        }
+        let shortest = at_pressure.iter().map(|computed| computed.shortest_wavelength_mm);
+        Ok((shortest.fold(f64::INFINITY, f64::min), values))
     }
 
     /// The prediction of Persson's theory on a spectrum.

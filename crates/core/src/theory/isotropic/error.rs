@@ -77,6 +77,15 @@ pub enum PerssonError {
         /// The tolerance.
         tolerance: f64,
     },
+    /// A temperature at which the rubber is not known.
+    #[error(
+        "the flash temperature leads to a rise of {rise:.1} K, where the shift of the rubber is not known: lower speed or pressure, or \
+         extend its shift with temperature"
+    )]
+    NoShift {
+        /// Rise in K.
+        rise: f64,
+    },
     /// A number that overflows.
     #[error(
         "{quantity} is {value}: moduli, heights or pressures are far outside those of any contact"
@@ -98,6 +107,7 @@ impl HasKind for PerssonError {
             | Self::Tolerance { .. }
             | Self::Band { .. }
             | Self::Load { .. }
+            | Self::NoShift { .. }
             | Self::Outside { .. } => ErrorKind::Input,
             Self::NotConverged { .. } | Self::NotFinite { .. } => ErrorKind::Failure,
         }

@@ -14,8 +14,16 @@ pub struct Heating<'a> {
     /// Diameter in m of the large contact regions, which a point of the rubber crosses in `t_0 = diameter / v`. All heat is
     /// made in the share of the area that is in contact with the waves longer than it.
     pub contact_diameter: f64,
-    /// `ln` of the shift factor and of the factor of all moduli at a rise of the temperature in K, both 0 without one.
+    /// `ln` of the shift factor and of the factor of all moduli at a rise of the temperature in K, both 0 without one; NaN where
+    /// they are not known.
     pub shift: &'a dyn Fn(f64) -> [f64; 2],
+}
+
+impl Heating<'_> {
+    /// Whether the rubber shifts to all these rises of the temperature in K.
+    fn is_known(&self, rises: &[f64]) -> bool {
+        rises.iter().all(|rise| (self.shift)(*rise).iter().all(|factor| factor.is_finite()))
+    }
 }
 
 /// A prediction with the heat of the rubber.
@@ -58,7 +66,7 @@ impl IsotropicPersson<'_> {
     ///
     /// # Errors
     /// As [`Self::at`]; [`PerssonError::NotPositive`] for a number of the heating, [`PerssonError::NotConverged`] if the
-    /// temperatures do not settle.
+    /// temperatures do not settle, [`PerssonError::NoShift`] if they lead where the shift is not known.
     pub fn heated(
         &self,
         speed: f64,
@@ -104,6 +112,9 @@ impl IsotropicPersson<'_> {
             self.predict(pressure, &grid[1..], &means)
         };
         let mut rise = vec![0.0; grid.len()];
+        if !heating.is_known(&rise) {
+            return Err(PerssonError::NoShift { rise: 0.0 });
+        }
         let (mut share, mut last) = (1.0_f64, f64::INFINITY);
         for steps in 1..=MOST_STEPS {
             let rows = predict(&rise)?;
@@ -121,8 +132,19 @@ impl IsotropicPersson<'_> {
             }
             // A step that leads away was too long.
             share = if change > 0.7 * last { (0.5 * share).max(LEAST_SHARE) } else { share };
-            rise.iter_mut().zip(&next).for_each(|(old, new)| *old += share * (new - *old));
-            last = change;
+            let step = |share: f64| -> Vec<f64> {
+                rise.iter().zip(&next).map(|(old, new)| old + share * (new - old)).collect()
+            };
+            // A step may lead to temperatures that only it has, and where the shift is not known.
+            let mut moved = step(share);
+            while !heating.is_known(&moved) {
+                share *= 0.5;
+                if share < LEAST_SHARE {
+                    return Err(PerssonError::NoShift { rise: hottest });
+                }
+                moved = step(share);
+            }
+            (rise, last) = (moved, change);
         }
         let (quantity, tolerance) = ("the flash temperature", SETTLED);
         Err(PerssonError::NotConverged { quantity, change: last, tolerance })
@@ -328,6 +350,11 @@ mod tests {
             }
         }
         let nowhere = |_: f64| [f64::NAN, 0.0];
-        assert!(theory.heated(1.0, 3e5, &heating(&nowhere)).is_err());
+        let error = theory.heated(1.0, 3e5, &heating(&nowhere)).unwrap_err();
+        assert!(matches!(error, PerssonError::NoShift { .. }), "{error}");
+        // A law that ends below the temperature of the contact.
+        let ends = |rise: f64| if rise <= 0.5 { [0.0, 0.0] } else { [f64::NAN; 2] };
+        let error = theory.heated(1.0, 3e5, &heating(&ends)).unwrap_err();
+        assert!(matches!(error, PerssonError::NoShift { .. }), "{error}");
     }
 }
