@@ -163,6 +163,18 @@ impl PerssonCommand {
                 100.0 * unmeasured
             ));
         }
+        if let Some((law, _)) = self.flash.asked(&material)?
+            && let Some([_, known]) = law.measured_c
+        {
+            let rise = flash.iter().map(|row| row.rise_k).fold(0.0, f64::max);
+            if law.reference_c + rise > known {
+                warn(&format!(
+                    "the rubber becomes up to {:.1} °C warm, and its shift with temperature was measured up to {known} °C: beyond \
+                     that it is extrapolated",
+                    law.reference_c + rise
+                ));
+            }
+        }
         if let Some(path) = &self.to {
             write_file(path, self.force, |out| write_csv(out, &rows, &flash))?;
         }

@@ -5,7 +5,8 @@ use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::HOTTEST_C;
 use crate::units::Units;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Section `[adhesion]` of a recipe: a shear stress τ_f of the contact area, which adds `τ_f A / (p A_0)` to friction.
 ///
@@ -27,7 +28,7 @@ pub struct Adhesion {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<f64>,
     /// Pairs of a speed in mm/s and a shear stress in MPa, speeds ascending; for `table`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "pairs")]
     pub points: Vec<[f64; 2]>,
     /// Activation energy in eV by which the speed shifts with temperature; without it, temperature has no effect.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -38,6 +39,18 @@ pub struct Adhesion {
     /// Shortest wavelength in mm of the surfaces whose contact area the stress was fitted to. Tables of another shortest wavelength warn:
     /// the contact area grows with every wave that is left out.
     pub shortest_wavelength_mm: f64,
+}
+
+/// Pairs of numbers; a third number in one is a mistake, and must not be dropped.
+fn pairs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; 2]>, D::Error> {
+    let rows = Vec::<Vec<f64>>::deserialize(deserializer)?;
+    let pair = |row: Vec<f64>| {
+        <[f64; 2]>::try_from(row).map_err(|row| {
+            let problem = "a point is a pair [speed in mm/s, stress in MPa]";
+            D::Error::custom(format!("{problem}, and {row:?} has {} numbers", row.len()))
+        })
+    };
+    rows.into_iter().map(pair).collect()
 }
 
 /// Largest shear stress in MPa that a recipe may state; glassy rubber has less.
@@ -210,6 +223,9 @@ mod tests {
         let table = "law = 'table'\nshortest_wavelength_mm = 0.06\n";
         assert!(error(table).contains("adhesion.points"));
         assert!(error(&format!("{table}points = [[1.0, 2.0], [0.5, 3.0]]")).contains("ascending"));
+        let three: Result<Adhesion, _> =
+            toml::from_str(&format!("{table}points = [[1.0, 2.0], [2.0, 3.0, 4.0]]"));
+        assert!(three.unwrap_err().to_string().contains("has 3 numbers"));
         let both = format!("{table}points = [[1.0, 2.0], [2.0, 3.0]]\nshear_mpa = 2.0");
         assert!(error(&both).contains("adhesion.shear_mpa = 2"));
         assert!(error(&BELL.replace("0.1", "-0.1")).contains("adhesion.width = -0.1"));

@@ -20,6 +20,8 @@ use nalgebra::{DMatrix, DVector};
 const LEAST_STRAIN: f64 = 0.01;
 /// Fewest points of a fit of three constants.
 const FEWEST: usize = 6;
+/// Stretches that rubber may have: natural rubber breaks at 8, and blocks are not pressed to a fiftieth.
+const POSSIBLE: std::ops::RangeInclusive<f64> = 0.02..=20.0;
 /// Locking stretches that are tried at first, as multiples of the largest chain stretch measured.
 const STRETCHES: [f64; 2] = [1.000_1, 30.0];
 const TRIES: usize = 400;
@@ -124,8 +126,10 @@ fn moduli(points: &[UniaxialPoint]) -> Result<Vec<Modulus>, HyperelasticError> {
             value,
             range,
         };
-        if !(stretch > 0.0 && stretch.is_finite()) {
-            return Err(bad("the stretch", stretch, "positive and finite, 1 without load"));
+        if !POSSIBLE.contains(&stretch) {
+            let range =
+                "from 0.02 to 20, 1 without load: a strain in percent is a hundred times too large";
+            return Err(bad("the stretch", stretch, range));
         }
         if !nominal_stress.is_finite() {
             return Err(bad("the stress in Pa", nominal_stress, "finite"));
@@ -266,6 +270,8 @@ mod tests {
         for (stretch, nominal_stress, text) in [
             (f64::NAN, 1.0, "point 3: the stretch is NaN"),
             (-0.5, 1.0, "point 3: the stretch is -0.5"),
+            (51.0, 1.0, "a strain in percent"),
+            (1e200, 1.0, "from 0.02 to 20"),
             (2.0, f64::INFINITY, "point 3: the stress in Pa is inf"),
             (2.0, -1.0, "positive in tension and negative in compression"),
         ] {
