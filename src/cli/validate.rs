@@ -1,12 +1,15 @@
 //! `asperity validate`: measured friction beside what is computed for it.
 
+use super::last_run::LastRun;
 use super::output::{json, note, print, refuse_existing};
 use super::recipe_options::{TakeOver, default_out, recipe_and_origin};
 use super::run::bring_up_to_date;
+use super::solve::refuse_to_overwrite;
 use super::{CliError, figure_file, threads, values};
 use asperity::artifact::RunView;
 use asperity::error_kind::HasKind;
 use asperity::pipeline::Selection;
+use asperity::recipe::Recipe;
 use asperity::validation::{Judged, JudgedPoint, Set, Validated, judge};
 use clap::Args;
 use serde::Serialize;
@@ -77,16 +80,26 @@ impl Validate {
         if let Some(path) = &self.figure {
             figure_file::is_png(path)?;
             refuse_existing(Some(path), self.force)?;
+            if path.is_dir() {
+                return Err(CliError::input(format!(
+                    "--figure {} is a folder: give a file",
+                    path.display()
+                )));
+            }
         }
         let outs: Vec<PathBuf> = self.sets.iter().map(|set| self.out_of(set)).collect();
         self.refuse_one_folder(&outs)?;
+        let recipes = self.sets.iter().map(|path| recipe_and_origin(path, &[], None));
+        let recipes = recipes.collect::<Result<Vec<_>, _>>()?;
+        self.refuse_over_an_input(recipes.iter().map(|(recipe, _)| recipe))?;
         threads::start(self.threads)?;
         let mut sets = Vec::new();
-        for (path, out) in self.sets.iter().zip(&outs) {
-            sets.push(self.set(path, out, quiet)?);
+        for ((path, out), read) in self.sets.iter().zip(&outs).zip(&recipes) {
+            sets.push(self.set(path, out, read, quiet)?);
         }
         let validated = judge(&sets)?;
-        for reason in &validated.left_out {
+        // The table says it itself.
+        for reason in validated.left_out.iter().filter(|_| self.json) {
             note(quiet, format_args!("warning: {reason}"));
         }
         let headline = validated.headline().ok_or_else(|| {
@@ -120,8 +133,15 @@ impl Validate {
 
     /// Two sets in one folder would overwrite each other.
     fn refuse_one_folder(&self, outs: &[PathBuf]) -> Result<(), CliError> {
+        let real = |path: &PathBuf| path.canonicalize().or_else(|_| std::path::absolute(path));
+        let same = |a: &PathBuf, b: &PathBuf| match (real(a), real(b)) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => a == b,
+        };
         for (k, out) in outs.iter().enumerate() {
-            if let Some(first) = outs[..k].iter().position(|other| other == out) {
+            let one =
+                |other: usize| same(&outs[other], out) || same(&self.sets[other], &self.sets[k]);
+            if let Some(first) = (0..k).find(|other| one(*other)) {
                 return Err(CliError::input(format!(
                     "{} and {} would both be run in {}: rename one of them, or give each set once",
                     self.sets[first].display(),
@@ -133,21 +153,36 @@ impl Validate {
         Ok(())
     }
 
+    /// A figure never replaces what it is drawn from.
+    fn refuse_over_an_input<'a>(
+        &self,
+        recipes: impl Iterator<Item = &'a Recipe>,
+    ) -> Result<(), CliError> {
+        let files: Vec<PathBuf> = recipes.flat_map(Recipe::files).collect();
+        let inputs: Vec<Option<&Path>> = files.iter().map(|path| Some(path.as_path())).collect();
+        refuse_to_overwrite(self.figure.as_deref(), "--figure", &inputs)
+    }
+
     /// A set with its run up to date.
-    fn set(&self, path: &Path, out: &Path, quiet: bool) -> Result<Set, CliError> {
+    fn set(
+        &self,
+        path: &Path,
+        out: &Path,
+        (recipe, last_run): &(Recipe, LastRun),
+        quiet: bool,
+    ) -> Result<Set, CliError> {
         let named = |error: asperity::validation::ValidationError| {
             CliError::of(error.kind(), format!("set {}: {error}", path.display()))
         };
-        let (recipe, last_run) = recipe_and_origin(path, &[], None)?;
         if recipe.validation.is_none() {
             return Err(named(asperity::validation::ValidationError::NoSection));
         }
         if recipe.is_spectrum_alone() {
-            return Set::read(&recipe, None).map_err(named);
+            return Set::read(recipe, None).map_err(named);
         }
         note(quiet, format_args!("{}", path.display()));
         let selection = Selection::default();
-        bring_up_to_date(&recipe, &last_run, out, selection, self.folder.take_over, quiet)?;
-        Set::read(&recipe, Some(&RunView::of(out))).map_err(named)
+        bring_up_to_date(recipe, last_run, out, selection, self.folder.take_over, quiet)?;
+        Set::read(recipe, Some(&RunView::of(out))).map_err(named)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error_kind::{ErrorKind, HasKind};
 use crate::files;
+use crate::rubber::HOTTEST_C;
 use crate::units::Units;
 use std::path::{Path, PathBuf};
 
@@ -144,7 +145,13 @@ fn columns(header: &[String]) -> Result<Vec<Option<Quantity>>, String> {
     // A temperature or pressure that is not understood must not be taken for one that was not measured.
     let meant = |name: &&String| {
         let name = name.to_ascii_lowercase();
-        quantity(&name).is_none() && (name.contains("temp") || name.contains("press"))
+        let short = ["t", "p", "sigma"].iter().any(|short| {
+            name == *short
+                || name
+                    .strip_prefix(short)
+                    .is_some_and(|rest| rest.starts_with(['_', ' ', '/', '(', '[']))
+        });
+        quantity(&name).is_none() && (short || name.contains("temp") || name.contains("press"))
     };
     if let Some(name) = header.iter().find(meant) {
         return Err(format!(
@@ -200,6 +207,11 @@ fn point(columns: &[Option<Quantity>], cells: &[String]) -> Result<MeasuredPoint
     if !(point.speed_mm_s > 0.0 && point.speed_mm_s.is_finite()) {
         return Err(format!("the speed {} mm/s is not positive", point.speed_mm_s));
     }
+    if let Some(celsius) = point.temperature_c.filter(|c| !(-100.0..=HOTTEST_C).contains(c)) {
+        return Err(format!(
+            "the temperature {celsius} °C is not between -100 and {HOTTEST_C} °C; is it in K?"
+        ));
+    }
     if let Some(pressure) = point.pressure_mpa.filter(|pressure| *pressure <= 0.0) {
         return Err(format!("the pressure {pressure} MPa is not positive"));
     }
@@ -244,6 +256,10 @@ mod tests {
         );
         assert!(error("speed_mm_s,friction\n1,nan\n").1.contains("`nan` is not a finite"));
         assert!(error("speed_mm_s,friction\n1,85\n").1.contains("not percent"));
+        assert!(
+            error("speed_mm_s,friction,p_MPa\n1,1,3\n").1.contains("`p_MPa` is not understood")
+        );
+        assert!(error("speed_mm_s,friction,temperature_c\n1,1,300\n").1.contains("is it in K"));
         assert!(error("speed_mm_s,friction,temperature_k\n1,1,300\n").1.contains("temperature_k"));
         assert!(error("speed_mm_s,friction\n1\n").1.contains("1 cells"));
         assert!(error("speed_mm_s,friction\n-1,2\n").1.contains("not positive"));

@@ -215,6 +215,11 @@ impl Recipe {
         Ok(self)
     }
 
+    /// Every file and folder that the recipe names.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.clone().paths_mut().map(|path| path.clone()).collect()
+    }
+
     /// Every file that the recipe names.
     fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let Self { ingest, bem, sinusoid, tables, sweep, validation, .. } = self;

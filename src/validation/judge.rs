@@ -54,6 +54,8 @@ pub struct Constant {
 pub struct FittedLaw {
     /// Titles of the sets that it was fitted to.
     pub fitted_to: Vec<String>,
+    /// Temperature in °C at which `speed_mm_s` holds, the lowest of the sets; none for a law that does not shift.
+    pub reference_c: Option<f64>,
     /// Measurements less fitted constants.
     pub degrees_of_freedom: usize,
     /// The constants.
@@ -141,9 +143,14 @@ impl Validated {
 /// friction. Without a fitted law it is the error of the computation alone.
 ///
 /// # Errors
-/// [`ValidationError::DifferentConstants`].
+/// [`ValidationError::DifferentConstants`], [`ValidationError::SameTitle`].
 pub fn judge(sets: &[Set]) -> Result<Validated, ValidationError> {
     let fixed = common_constants(sets)?;
+    for (k, set) in sets.iter().enumerate() {
+        if sets[..k].iter().any(|other| other.title == set.title) {
+            return Err(ValidationError::SameTitle { title: set.title.clone() });
+        }
+    }
     let mut left_out: Vec<String> = sets
         .iter()
         .flat_map(|set| set.left_out.iter().map(|reason| format!("{}: {reason}", set.title)))
@@ -190,6 +197,24 @@ fn common_constants(sets: &[Set]) -> Result<Fixed, ValidationError> {
     Ok(fixed)
 }
 
+/// Relative difference of shortest wavelengths that counts as none, as in the tables of total friction.
+const SAME_WAVELENGTH: f64 = 0.05;
+
+/// Why a case has no result.
+#[derive(Debug, thiserror::Error)]
+enum Unjudged {
+    #[error(transparent)]
+    Shear(#[from] ShearError),
+    #[error(
+        "the law is fitted at {fitted_c} °C without a shift, and a measurement is at {celsius} °C: set validation.activation_ev"
+    )]
+    Temperature { fitted_c: f64, celsius: f64 },
+    #[error(
+        "the law of [adhesion] belongs to a shortest wavelength of {fitted} mm, and these surfaces end at {own:.6} mm"
+    )]
+    Wavelength { fitted: f64, own: f64 },
+}
+
 /// One prediction of all sets.
 struct Judging<'a> {
     sets: &'a [Set],
@@ -207,26 +232,58 @@ enum Shear<'a> {
 
 impl Judging<'_> {
     /// The prediction in a case; none where the sets do not have it.
-    fn case(&self, case: Case) -> Result<Option<Judged>, ShearError> {
+    fn case(&self, case: Case) -> Result<Option<Judged>, Unjudged> {
         let all: Vec<usize> = (0..self.sets.len()).collect();
         let but = |one: usize| all.iter().copied().filter(|k| *k != one).collect::<Vec<_>>();
         let several = self.sets.len() > 1;
         match case {
-            Case::Hysteresis => self.judged(case, &[]).map(Some),
+            Case::Hysteresis => Ok(Some(self.judged(case, &[])?)),
             Case::Given if self.sets.iter().all(|set| set.given.is_some()) => {
-                self.judged(case, &[]).map(Some)
+                self.require_fitted_wavelength()?;
+                Ok(Some(self.judged(case, &[])?))
             }
             Case::Own => {
                 let fits = all.iter().map(|k| self.fit(&[*k])).collect::<Result<Vec<_>, _>>()?;
-                self.judged(case, &fits).map(Some)
+                Ok(Some(self.judged(case, &fits)?))
             }
-            Case::Joint if several => self.judged(case, &[self.fit(&all)?]).map(Some),
+            Case::Joint if several => Ok(Some(self.judged(case, &[self.fit(&all)?])?)),
             Case::Other if several => {
                 let fits = all.iter().map(|k| self.fit(&but(*k))).collect::<Result<Vec<_>, _>>()?;
-                self.judged(case, &fits).map(Some)
+                self.require_shift(&fits)?;
+                Ok(Some(self.judged(case, &fits)?))
             }
             Case::Given | Case::Joint | Case::Other => Ok(None),
         }
+    }
+
+    /// A law that was fitted at one temperature says nothing of another one.
+    fn require_shift(&self, fits: &[(Vec<usize>, FittedShear)]) -> Result<(), Unjudged> {
+        let celsius =
+            |k: usize| self.predictions[k].values.iter().map(|value| value.measured.temperature_c);
+        for (k, (of, fit)) in fits.iter().enumerate() {
+            let fitted = of.first().and_then(|first| celsius(*first).next());
+            let mut own = celsius(k);
+            if let (None, Some(fitted_c), Some(celsius)) =
+                (fit.law.shift, fitted, own.find(|own| Some(*own) != fitted))
+            {
+                return Err(Unjudged::Temperature { fitted_c, celsius });
+            }
+        }
+        Ok(())
+    }
+
+    /// A law belongs to the shortest wavelength that it was fitted at.
+    fn require_fitted_wavelength(&self) -> Result<(), Unjudged> {
+        for (set, prediction) in self.sets.iter().zip(self.predictions) {
+            let own = prediction.shortest_wavelength_mm;
+            let given = set.given.as_ref().map(|(_, fitted)| *fitted);
+            if let Some(fitted) =
+                given.filter(|fitted| (own / fitted - 1.0).abs() > SAME_WAVELENGTH)
+            {
+                return Err(Unjudged::Wavelength { fitted, own });
+            }
+        }
+        Ok(())
     }
 
     /// One law for some sets.
@@ -238,7 +295,8 @@ impl Judging<'_> {
         let first = measured.first().map(|m| m.temperature_c);
         let one = measured.iter().all(|m| Some(m.temperature_c) == first);
         let shifts = !one || self.fixed.energy_ev.is_some();
-        let reference_c = of.first().and_then(|k| self.sets[*k].temperature_c).or(first);
+        let known = self.sets.iter().filter_map(|set| set.temperature_c).reduce(f64::min);
+        let reference_c = known.or(first);
         let fit = fit_shear(&measured, reference_c.filter(|_| shifts), self.fixed)?;
         Ok((of.to_vec(), fit))
     }
@@ -263,6 +321,7 @@ impl Judging<'_> {
         }
         let law = |(of, fit): &(Vec<usize>, FittedShear)| FittedLaw {
             fitted_to: of.iter().map(|k| self.sets[*k].title.clone()).collect(),
+            reference_c: fit.law.shift.map(|shift| shift.reference_c),
             degrees_of_freedom: fit.degrees_of_freedom,
             constants: constants(fit),
         };
@@ -337,4 +396,97 @@ fn constants(fit: &FittedShear) -> Vec<Constant> {
     ];
     constants.extend(fit.energy_ev.map(|energy| constant("activation_ev", energy, |c| c)));
     constants
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Friction of a law of 6 MPa, 10 mm/s at 20 °C, width 0.1 and 0.5 eV over five decades, with an error that alternates in sign.
+    fn set(title: &str, celsius: f64, noise: f64) -> Set {
+        let value = |k: i32| {
+            let speed = 10.0_f64.powi(k - 4);
+            let (pressure, hysteretic, contact_area_fraction) = (3e5, 0.2, 0.1);
+            let shift = crate::interface::Activation { energy_ev: 0.5, reference_c: 20.0 };
+            let decades =
+                (speed / 0.01).log10() + shift.ln_factor(celsius) / std::f64::consts::LN_10;
+            let adhesive =
+                6e6 * (-0.1 * decades * decades).exp() * contact_area_fraction / pressure;
+            let error = if k % 2 == 0 { noise } else { -noise };
+            Beside {
+                measured: MeasuredFriction {
+                    speed,
+                    temperature_c: celsius,
+                    pressure,
+                    friction: hysteretic + adhesive + error,
+                    hysteretic,
+                    contact_area_fraction,
+                },
+                hysteretic_error: Some(0.01),
+                relative_area_error: Some(0.02),
+            }
+        };
+        let label =
+            Label { model: "bem".into(), surfaces: "measured".into(), effect: "none".into() };
+        Set {
+            title: title.into(),
+            measured: "friction.csv".into(),
+            lines: (2..8).collect(),
+            temperature_c: Some(celsius),
+            several_temperatures: false,
+            fixed: Fixed { width: Some(0.1), ..Fixed::default() },
+            given: None,
+            predictions: vec![Prediction {
+                label,
+                shortest_wavelength_mm: 0.06,
+                values: (0..6).map(value).collect(),
+            }],
+            left_out: Vec::new(),
+        }
+    }
+
+    fn of(judged: &Validated, case: Case) -> &Judged {
+        judged.results.iter().find(|result| result.case == case).unwrap()
+    }
+
+    #[test]
+    fn bands_hold_the_errors_of_the_computation_and_of_the_fit() {
+        let judged = judge(&[set("a", 20.0, 0.05), set("b", 20.0, 0.0)]).unwrap();
+        let alone = of(&judged, Case::Hysteresis);
+        assert_eq!((alone.with_band, alone.inside_band), (12, 0));
+        let [low, high] = alone.points[0].band_95.unwrap();
+        approx::assert_relative_eq!(high - low, 0.02, max_relative = 1e-12);
+        // The exact set alone: no scatter, and the error of the computation is left.
+        let own = of(&judged, Case::Own);
+        assert!(own.rms_of_sets[1] < 1e-9 && own.rms_of_sets[0] > 0.03, "{:?}", own.rms_of_sets);
+        let exact = &own.points[8];
+        let [low, high] = exact.band_95.unwrap();
+        let computed = 0.01 + 0.02 * exact.adhesive;
+        approx::assert_relative_eq!(high - low, 2.0 * computed, max_relative = 1e-6);
+        let other = of(&judged, Case::Other);
+        assert_eq!(other.laws[0].fitted_to, ["b"]);
+        assert!((other.rms_of_sets[0] - 0.05).abs() < 1e-9, "{:?}", other.rms_of_sets);
+        assert_eq!(judged.headline().unwrap().case, Case::Joint);
+    }
+
+    #[test]
+    fn a_law_of_one_temperature_predicts_no_other_one() {
+        let judged = judge(&[set("a", 20.0, 0.0), set("b", 40.0, 0.0)]).unwrap();
+        assert!(judged.results.iter().all(|result| result.case != Case::Other));
+        let reason = judged.left_out.iter().find(|reason| reason.contains("other")).unwrap();
+        assert!(reason.contains("20 °C") && reason.contains("40 °C"), "{reason}");
+        assert_eq!(of(&judged, Case::Joint).laws[0].reference_c, Some(20.0));
+        let turned = judge(&[set("b", 40.0, 0.0), set("a", 20.0, 0.0)]).unwrap();
+        assert_eq!(of(&turned, Case::Joint).laws[0].reference_c, Some(20.0));
+    }
+
+    #[test]
+    fn sets_that_cannot_be_told_apart_or_fix_other_constants_are_refused() {
+        let same = judge(&[set("a", 20.0, 0.0), set("a", 20.0, 0.0)]).unwrap_err();
+        assert!(same.to_string().contains("title `a`"), "{same}");
+        let mut other = set("b", 20.0, 0.0);
+        other.fixed.width = Some(0.2);
+        let different = judge(&[set("a", 20.0, 0.0), other]).unwrap_err();
+        assert!(different.to_string().contains("different width"), "{different}");
+    }
 }

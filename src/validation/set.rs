@@ -127,6 +127,12 @@ pub enum ValidationError {
     /// A law that is none.
     #[error("section [adhesion]: {0}")]
     Adhesion(crate::interface::ShearError),
+    /// Sets that cannot be told apart.
+    #[error("two sets have the title `{title}`: give each recipe a title of its own")]
+    SameTitle {
+        /// The title.
+        title: String,
+    },
     /// Sets that cannot have a law in common.
     #[error(
         "the sets state different {key} in [validation]: give all of them the same, or judge them one by one"
@@ -145,6 +151,7 @@ impl HasKind for ValidationError {
             | Self::Pressure { .. }
             | Self::Spectrum(_)
             | Self::Adhesion(_)
+            | Self::SameTitle { .. }
             | Self::DifferentConstants { .. } => ErrorKind::Input,
             Self::Measured(error) => error.kind(),
             Self::Temperature { source, .. } => source.kind(),
@@ -183,8 +190,14 @@ impl Set {
             match measurement.of_spectrum(spectrum, &pressures) {
                 Ok(prediction) => predictions.push(prediction),
                 // Moduli may end before the waves do; the contacts of the run are not worse for it.
-                Err(error @ ValidationError::Theory { .. }) if !predictions.is_empty() => {
-                    left_out.push(error.to_string());
+                Err(ValidationError::Theory { path, source })
+                    if !predictions.is_empty()
+                        && matches!(
+                            *source,
+                            PerssonError::Rubber(_) | PerssonError::NotConverged { .. }
+                        ) =>
+                {
+                    left_out.push(ValidationError::Theory { path, source }.to_string());
                 }
                 Err(error) => return Err(error),
             }
@@ -343,7 +356,17 @@ impl Measurement<'_> {
             read_spectrum(&section.file, conventions).map_err(ValidationError::Spectrum)?;
         let [longest, mut shortest] = spectrum.band();
         if let Some(mm) = section.shortest_wavelength_mm {
-            shortest = TAU / mm.mm_to_m();
+            let ends = [shortest, longest].map(|wavenumber| (TAU / wavenumber).m_to_mm());
+            if !(ends[0] * (1.0 - 1e-5)..ends[1]).contains(&mm) {
+                return Err(ValidationError::Spectrum(format!(
+                    "{}: validation.spectrum.shortest_wavelength_mm = {mm}, and the spectrum has waves from {:.6} to {:.6} mm: stay \
+                     within them; is wavenumber_unit right?",
+                    section.file.display(),
+                    ends[0],
+                    ends[1]
+                )));
+            }
+            shortest = (TAU / mm.mm_to_m()).min(shortest);
         }
         let options = PerssonOptions {
             gamma: section.gamma,

@@ -51,6 +51,9 @@ impl Validated {
                 let _ = writeln!(text, "{:<10}  {}", case.name(), case.means());
             }
         }
+        for reason in &self.left_out {
+            let _ = writeln!(text, "left out    {reason}");
+        }
         if let Some(headline) = self.headline() {
             let _ = writeln!(
                 text,
@@ -73,7 +76,7 @@ fn laws(result: &Judged) -> String {
     let constant = |constant: &Constant| {
         let Constant { key, value, interval_95 } = constant;
         match interval_95 {
-            Some([low, high]) if *high > UNDETERMINED * low => {
+            Some([low, high]) if *low > 0.0 && *high > UNDETERMINED * low => {
                 format!("{key} {} (not determined)", significant(*value))
             }
             Some(ends) => {
@@ -84,7 +87,8 @@ fn laws(result: &Judged) -> String {
         }
     };
     let law = |law: &super::judge::FittedLaw| {
-        law.constants.iter().map(constant).collect::<Vec<_>>().join(", ")
+        let at = law.reference_c.map(|celsius| format!(" at {celsius} °C")).unwrap_or_default();
+        law.constants.iter().map(constant).collect::<Vec<_>>().join(", ") + &at
     };
     match &result.laws[..] {
         [] => "none".into(),

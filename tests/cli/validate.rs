@@ -104,6 +104,10 @@ fn one_law_of_two_sets_predicts_each_from_the_other() {
     campaign.write("measured_2.csv", &wide);
     let second = campaign.read("recipe.toml").replace("measured.csv", "measured_2.csv");
     campaign.write("second.toml", &second);
+    let same = outcome(&campaign, "validate recipe.toml second.toml --out out --quiet").error(2);
+    assert!(same.contains("two sets have the title"), "{same}");
+    let second = second.replace("title = \"", "title = \"second, ");
+    campaign.write("second.toml", &second);
     let judged = judged(&campaign, "recipe.toml second.toml --out out");
     for case in ["own", "joint", "other"] {
         let rms = result(&judged, case)["rms"].as_f64().unwrap();
@@ -172,10 +176,21 @@ fn mistakes_say_what_to_do() {
     assert!(word.contains("line 2") && word.contains("`much`"), "{word}");
     let twice = outcome(&campaign, "validate recipe.toml ./recipe.toml --out out").error(2);
     assert!(twice.contains("would both be run in"), "{twice}");
+    let spelled = outcome(&campaign, "validate recipe.toml out/../recipe.toml").error(2);
+    assert!(spelled.contains("would both be run in"), "{spelled}");
+    campaign.write("measured.svg", "speed_mm_s,friction\n1,1.2\n");
+    let drawn = campaign.read("recipe.toml").replace("measured.csv", "measured.svg");
+    campaign.write("drawn.toml", &drawn);
+    let over =
+        outcome(&campaign, "validate drawn.toml --out out --figure measured.svg --force").error(2);
+    assert!(
+        over.contains("--figure") && campaign.read("measured.svg").starts_with("speed"),
+        "{over}"
+    );
     // Too few to fit: said, and hysteresis is still judged.
     campaign.write("measured.csv", "speed_mm_s,friction\n1,1.2\n10,1.1\n");
     let few = outcome(&campaign, "validate recipe.toml --out out");
-    assert!(few.code == 0 && few.stderr.contains("at least 4"), "{}", few.stderr);
+    assert!(few.code == 0 && few.stdout.contains("at least 4"), "{}", few.stdout);
     let unknown = campaign.read("recipe.toml").replace("measured = ", "width = -1\nmeasured = ");
     campaign.write("recipe.toml", &unknown);
     let width = outcome(&campaign, validate).error(2);
