@@ -296,7 +296,7 @@ struct Areas {
 }
 
 impl Areas {
-    /// The areas behind an average: none where the model has none of its own.
+    /// Reads the contact areas of all surfaces that an average was taken over; empty for models without a half-space solution.
     fn read(run: &RunView, of: &Average) -> Result<Self, ArtifactError> {
         let mut values: Vec<FrictionAt> = if let Some(effect) = of.effect {
             let rows = run.rows(CONTACTS)?;

@@ -1,6 +1,6 @@
 //! A measured power spectrum: a text file of two columns, wavenumber and density.
 
-use crate::files::{Located, read_located};
+use crate::files::{Located, cells, read_located};
 use crate::surface::spectrum::IsotropicSpectrum;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -142,14 +142,7 @@ fn finite(cell: &str) -> Result<f64, String> {
 
 /// Wavenumber and density, both positive.
 fn parse_point(data: &str, logarithms: bool) -> Result<[f64; 2], String> {
-    // Blanks around a comma or semicolon are part of the separator; between two separators is an empty cell.
-    let cells: Vec<&str> = data
-        .split([',', ';'])
-        .flat_map(|part| match part.trim() {
-            "" => vec![""],
-            cells => cells.split_whitespace().collect(),
-        })
-        .collect();
+    let cells = cells(data);
     let [wavenumber, density] = cells[..] else {
         return Err(format!(
             "{} columns instead of the 2 columns wavenumber and density with decimal points; start lines of text with #",

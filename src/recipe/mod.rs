@@ -369,6 +369,7 @@ impl Chain<'_> {
             adhesion.check(self.bem.temperature_c, &self.bem.speeds_mm_s)
         })?;
         if let Some(feedback) = self.feedback {
+            // A law that is none was refused by the check before.
             let shear = self.adhesion.and_then(|adhesion| adhesion.shear_law().ok());
             feedback.check(self.bem, &self.realise.methods, shear.as_ref())?;
         }

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Section `[validation]` of a recipe: measured friction beside which `asperity validate` puts what the recipe computes.
+/// Section `[validation]` of a recipe: measured friction that `asperity validate` compares with the computed one.
 ///
 /// The stages do not read it. What dry friction has beside hysteresis is a shear stress of the contact area, whose constants are
 /// fitted to the measurement unless they stand here (`docs/validation.md`).

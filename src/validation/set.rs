@@ -1,4 +1,4 @@
-//! A set: measured friction, and every prediction beside it.
+//! Reads a set: the measured friction and, for every point, the predictions of the run and of the spectrum.
 
 use crate::artifact::RunView;
 use crate::error_kind::{ErrorKind, HasKind};

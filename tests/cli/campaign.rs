@@ -34,87 +34,84 @@ fn a_run_tells_of_each_stage_and_leaves_standard_output_to_json() {
     assert_eq!((&json[2]["fresh"], &json[3]["fresh"]), (&true.into(), &false.into()));
 }
 
+/// What is replaced, by what, and parts of the message: file, key, value, what to do.
+const MISTAKES: [(&str, &str, &[&str]); 37] = [
+    ("seed = 1", "seed = ", &["line 27", "seed ="]),
+    ("seed = 1", "sed = 1", &["line 27", "unknown key `sed`", "`seed`"]),
+    ("seed = 1", "", &["realise.seed is missing", "line 24", "sweep.seeds"]),
+    ("seed = 1", "seed = -1", &["line 27", "seed = -1", "-1 is not a whole number of 0 or more"]),
+    ("[realise]", "[realize]", &["unknown key `realize`"]),
+    ("speeds_mm_s", "speeds_m_s", &["unknown key `speeds_m_s`", "`speeds_mm_s`"]),
+    ("[10.0]", "[0.0]", &["bem.speeds_mm_s = [0.0]"]),
+    ("[10.0]", "[-10.0]", &["bem.speeds_mm_s = [-10.0]"]),
+    ("[10.0]", "[nan]", &["bem.speeds_mm_s = [nan]"]),
+    ("[10.0]", "[inf]", &["bem.speeds_mm_s = [inf]"]),
+    ("[10.0]", "[1e-300]", &["bem.speeds_mm_s = [1e-300]", "from 1e-9 to 1e9"]),
+    ("[10.0]", "[10.0, 10.0]", &["bem.speeds_mm_s", "without repeats"]),
+    ("[10.0]", "[]", &["bem.speeds_mm_s = []"]),
+    ("[0.02, 0.05, 0.1]", "[0.05, 0.02]", &["bem.area_fractions", "ascending"]),
+    ("[0.02, 0.05, 0.1]", "[0.5, 1.0]", &["bem.area_fractions", "between 0 and 1"]),
+    ("[0.02, 0.05, 0.1]", "[]", &["bem.area_fractions = []", "at least one"]),
+    ("5e-3", "inf", &["bem.tolerance = inf"]),
+    ("5e-3", "5e-3\nfield_area_fractions = [0.2]", &["bem.field_area_fractions = [0.2]"]),
+    ("= 16", "= 2", &["bem.points_per_shortest_wavelength = 2", "4 to 65536"]),
+    ("waves = [3]", "waves = [3, 4]", &["realise.waves = [3, 4]", "approximate.waves"]),
+    ("waves = [3]", "waves = []", &["realise.waves = []"]),
+    ("realisations = 2", "realisations = 0", &["realise.realisations = 0"]),
+    ("[2, 3]", "[2, 2, 3]", &["approximate.waves = [2, 2, 3]", "each once"]),
+    ("mm = 0.5", "mm = nan", &["approximate.shortest_wavelength_mm"]),
+    (
+        "shortest_wavelength_mm = 0.5",
+        "given = [{ source = 'x', scales = [{ wavelength_mm = 1.0, amplitude_mm = 0.1 }] }]",
+        &["approximate.given", "without [ingest]"],
+    ),
+    ("x_unit = \"mm\"\n", "", &["ingest.text", "x_unit", "never guessed", "nm, um, mm, m"]),
+    ("x_unit = \"mm\"", "x_unit = \"inch\"", &["unknown value `inch`", "mm"]),
+    ("\"slope\"", "\"slope\"\nmax_missing = 1.5", &["ingest.conditioning.max_missing = 1.5"]),
+    ("\"slope\"", "{ polynomial = 20 }", &["form.polynomial = 20"]),
+    (
+        "[realise]",
+        "[micro]\nrms_slope_threshold = inf\n[realise]",
+        &["micro.rms_slope_threshold = inf: must be positive and finite"],
+    ),
+    (
+        "[characterise]",
+        "[characterise]\nlambda_s_mm = 2.5\nlambda_c_mm = 0.8",
+        &["characterise.(lambda_s_mm, lambda_c_mm) = (2.5, 0.8)", "in ascending order"],
+    ),
+    (
+        "[characterise]",
+        "[characterise]\nlambda_s_mm = 2.5\nsection_length_mm = 2.5",
+        &["recipe.toml, line 19: characterise.(lambda_s_mm, section_length_mm) = (2.5, 2.5)"],
+    ),
+    (
+        "[characterise]",
+        "[characterise]\nself_affine_shortest_lag_mm = 2\nself_affine_longest_lag_mm = 1",
+        &["(self_affine_shortest_lag_mm, self_affine_longest_lag_mm) = (2.0, 1.0)"],
+    ),
+    (
+        "[characterise]",
+        "[characterise]\n[characterise.profile_depth]\nhigh_pass_mm = 2",
+        &["characterise.profile_depth.(low_pass_mm, high_pass_mm) = (2.4, 2.0)"],
+    ),
+    (
+        "[characterise]",
+        "[characterise]\n[characterise.profile_depth]\nsegment_mm = 2",
+        &["characterise.profile_depth.(low_pass_mm, segment_mm) = (2.4, 2.0)"],
+    ),
+    ("mm = 0.5", "mm = inf", &["shortest_wavelength_mm = inf: must be positive and finite"]),
+    (
+        "shortest_wavelength_mm = 0.5",
+        "given = [{ source = 'x', scales = [{ wavelength_mm = 1.0, amplitude_mm = -0.1 }] }]",
+        &["scales (wavelength_mm, amplitude_mm) = [(1.0, -0.1)]: must be positive wavelengths"],
+    ),
+];
+
 #[test]
 fn mistakes_in_the_recipe_are_named_and_nothing_is_written() {
-    // What is replaced, by what, and parts of the message: file, key, value, what to do.
-    let cases: [(&str, &str, &[&str]); 37] = [
-        ("seed = 1", "seed = ", &["line 27", "seed ="]),
-        ("seed = 1", "sed = 1", &["line 27", "unknown key `sed`", "`seed`"]),
-        ("seed = 1", "", &["realise.seed is missing", "line 24", "sweep.seeds"]),
-        (
-            "seed = 1",
-            "seed = -1",
-            &["line 27", "seed = -1", "-1 is not a whole number of 0 or more"],
-        ),
-        ("[realise]", "[realize]", &["unknown key `realize`"]),
-        ("speeds_mm_s", "speeds_m_s", &["unknown key `speeds_m_s`", "`speeds_mm_s`"]),
-        ("[10.0]", "[0.0]", &["bem.speeds_mm_s = [0.0]"]),
-        ("[10.0]", "[-10.0]", &["bem.speeds_mm_s = [-10.0]"]),
-        ("[10.0]", "[nan]", &["bem.speeds_mm_s = [nan]"]),
-        ("[10.0]", "[inf]", &["bem.speeds_mm_s = [inf]"]),
-        ("[10.0]", "[1e-300]", &["bem.speeds_mm_s = [1e-300]", "from 1e-9 to 1e9"]),
-        ("[10.0]", "[10.0, 10.0]", &["bem.speeds_mm_s", "without repeats"]),
-        ("[10.0]", "[]", &["bem.speeds_mm_s = []"]),
-        ("[0.02, 0.05, 0.1]", "[0.05, 0.02]", &["bem.area_fractions", "ascending"]),
-        ("[0.02, 0.05, 0.1]", "[0.5, 1.0]", &["bem.area_fractions", "between 0 and 1"]),
-        ("[0.02, 0.05, 0.1]", "[]", &["bem.area_fractions = []", "at least one"]),
-        ("5e-3", "inf", &["bem.tolerance = inf"]),
-        ("5e-3", "5e-3\nfield_area_fractions = [0.2]", &["bem.field_area_fractions = [0.2]"]),
-        ("= 16", "= 2", &["bem.points_per_shortest_wavelength = 2", "4 to 65536"]),
-        ("waves = [3]", "waves = [3, 4]", &["realise.waves = [3, 4]", "approximate.waves"]),
-        ("waves = [3]", "waves = []", &["realise.waves = []"]),
-        ("realisations = 2", "realisations = 0", &["realise.realisations = 0"]),
-        ("[2, 3]", "[2, 2, 3]", &["approximate.waves = [2, 2, 3]", "each once"]),
-        ("mm = 0.5", "mm = nan", &["approximate.shortest_wavelength_mm"]),
-        (
-            "shortest_wavelength_mm = 0.5",
-            "given = [{ source = 'x', scales = [{ wavelength_mm = 1.0, amplitude_mm = 0.1 }] }]",
-            &["approximate.given", "without [ingest]"],
-        ),
-        ("x_unit = \"mm\"\n", "", &["ingest.text", "x_unit", "never guessed", "nm, um, mm, m"]),
-        ("x_unit = \"mm\"", "x_unit = \"inch\"", &["unknown value `inch`", "mm"]),
-        ("\"slope\"", "\"slope\"\nmax_missing = 1.5", &["ingest.conditioning.max_missing = 1.5"]),
-        ("\"slope\"", "{ polynomial = 20 }", &["form.polynomial = 20"]),
-        (
-            "[realise]",
-            "[micro]\nrms_slope_threshold = inf\n[realise]",
-            &["micro.rms_slope_threshold = inf: must be positive and finite"],
-        ),
-        (
-            "[characterise]",
-            "[characterise]\nlambda_s_mm = 2.5\nlambda_c_mm = 0.8",
-            &["characterise.(lambda_s_mm, lambda_c_mm) = (2.5, 0.8)", "in ascending order"],
-        ),
-        (
-            "[characterise]",
-            "[characterise]\nlambda_s_mm = 2.5\nsection_length_mm = 2.5",
-            &["recipe.toml, line 19: characterise.(lambda_s_mm, section_length_mm) = (2.5, 2.5)"],
-        ),
-        (
-            "[characterise]",
-            "[characterise]\nself_affine_shortest_lag_mm = 2\nself_affine_longest_lag_mm = 1",
-            &["(self_affine_shortest_lag_mm, self_affine_longest_lag_mm) = (2.0, 1.0)"],
-        ),
-        (
-            "[characterise]",
-            "[characterise]\n[characterise.profile_depth]\nhigh_pass_mm = 2",
-            &["characterise.profile_depth.(low_pass_mm, high_pass_mm) = (2.4, 2.0)"],
-        ),
-        (
-            "[characterise]",
-            "[characterise]\n[characterise.profile_depth]\nsegment_mm = 2",
-            &["characterise.profile_depth.(low_pass_mm, segment_mm) = (2.4, 2.0)"],
-        ),
-        ("mm = 0.5", "mm = inf", &["shortest_wavelength_mm = inf: must be positive and finite"]),
-        (
-            "shortest_wavelength_mm = 0.5",
-            "given = [{ source = 'x', scales = [{ wavelength_mm = 1.0, amplitude_mm = -0.1 }] }]",
-            &["scales (wavelength_mm, amplitude_mm) = [(1.0, -0.1)]: must be positive wavelengths"],
-        ),
-    ];
     let campaign = Campaign::new();
     let recipe = campaign.read("recipe.toml");
-    for (from, to, parts) in cases {
+    for (from, to, parts) in MISTAKES {
         campaign.edit("recipe.toml", from, to);
         for command in ["run", "status"] {
             let arguments = format!("{command} recipe.toml --out out");

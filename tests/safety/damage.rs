@@ -37,6 +37,28 @@ fn run_again(campaign: &Campaign, damaged: &Path) {
     }
 }
 
+/// What a file holds after each damage, by name; none where it is gone, or where the damage changes nothing.
+fn damages(
+    bytes: &[u8],
+    foreign: Option<Vec<u8>>,
+    bit: usize,
+) -> [(&'static str, Option<Vec<u8>>); 5] {
+    let flipped = |mut bytes: Vec<u8>| {
+        let before = serde_json::from_slice::<serde_json::Value>(&bytes).ok();
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        // `1e-5` and `1E-5` are one number.
+        let same = before.is_some() && before == serde_json::from_slice(&bytes).ok();
+        (!same).then_some(bytes)
+    };
+    [
+        ("truncated", Some(bytes[..bytes.len() / 2].to_vec())),
+        ("one bit flipped", flipped(bytes.to_vec())),
+        ("of another run", foreign),
+        ("empty", Some(Vec::new())),
+        ("gone", None),
+    ]
+}
+
 #[test]
 fn damage_to_any_file_is_found_named_and_mended() {
     let campaign = finished();
@@ -75,21 +97,7 @@ fn damage_to_any_file_is_found_named_and_mended() {
             other.path("out").join(name)
         };
         let foreign = fs::read(another).ok().filter(|other| *other != bytes);
-        let bit = rng.random_range(0..8 * bytes.len());
-        let flipped = |mut bytes: Vec<u8>| {
-            let before = serde_json::from_slice::<serde_json::Value>(&bytes).ok();
-            bytes[bit / 8] ^= 1 << (bit % 8);
-            // `1e-5` and `1E-5` are one number.
-            let same = before.is_some() && before == serde_json::from_slice(&bytes).ok();
-            (!same).then_some(bytes)
-        };
-        let damages = [
-            ("truncated", Some(bytes[..bytes.len() / 2].to_vec())),
-            ("one bit flipped", flipped(bytes.clone())),
-            ("of another run", foreign),
-            ("empty", Some(Vec::new())),
-            ("gone", None),
-        ];
+        let damages = damages(&bytes, foreign, rng.random_range(0..8 * bytes.len()));
         for (what, content) in damages {
             let gone = what == "gone";
             let place = out.join(name);

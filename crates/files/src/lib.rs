@@ -12,7 +12,7 @@ pub mod name;
 pub mod os;
 mod toml_error;
 
-pub use located::{Located, read_located};
+pub use located::{Located, cells, read_located};
 pub use toml_error::{TomlError, nearest};
 
 use std::fs::File;

@@ -22,3 +22,14 @@ pub fn read_located<T>(
         None => in_file(problem),
     })
 }
+
+/// Cells of a line, separated by commas, semicolons or blanks. Blanks around a comma or semicolon are part of the separator;
+/// between two separators is an empty cell.
+pub fn cells(line: &str) -> Vec<&str> {
+    line.split([',', ';'])
+        .flat_map(|part| match part.trim() {
+            "" => vec![""],
+            cells => cells.split_whitespace().collect(),
+        })
+        .collect()
+}

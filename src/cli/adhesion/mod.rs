@@ -195,6 +195,7 @@ impl Fit {
         }
         let bem = recipe.and_then(|recipe| recipe.bem.as_ref());
         let run_c = bem.and_then(|bem| bem.temperature_c);
+        // Read only if temperatures differ from that of `bem`, which then is there.
         let rubber = bem.map(|bem| bem.rubber.clone()).unwrap_or_default();
         Ok(Temperatures::new(file, self.temperature_c, run_c, &rubber)?)
     }

@@ -1,6 +1,6 @@
 //! A periodic profile in a text file of two columns.
 
-use asperity::files::{Located, read_located};
+use asperity::files::{Located, cells, read_located};
 use asperity::units::Units;
 use std::path::Path;
 
@@ -53,14 +53,7 @@ fn parse_profile(text: &str, unit: LengthUnit) -> Result<Shape, Located> {
 }
 
 fn parse_point(data: &str) -> Result<(f64, f64), String> {
-    // Blanks around a comma or semicolon are part of the separator; between two separators is an empty cell.
-    let cells: Vec<&str> = data
-        .split([',', ';'])
-        .flat_map(|part| match part.trim() {
-            "" => vec![""],
-            cells => cells.split_whitespace().collect(),
-        })
-        .collect();
+    let cells = cells(data);
     let [x, z] = cells[..] else {
         return Err(format!(
             "{} columns instead of the 2 columns x and z with decimal points",

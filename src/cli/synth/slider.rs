@@ -24,9 +24,9 @@ const DEPTHS: std::ops::Range<f64> = 1e-9..10.0;
 
 /// Write one period of equal hard sliders, a profile for `asperity solve bem`.
 ///
-/// A single slider needs a period long beside its contact and beside the way that the rubber slides while it recovers:
+/// A single slider needs a period much longer than its contact and than the distance that the rubber slides while it recovers:
 /// solve with the period doubled, at the same force per length, until friction stays. The force per length in N/mm is the mean
-/// pressure in MPa times the period in mm. docs/slider.md has exact solutions beside it.
+/// pressure in MPa times the period in mm. docs/slider.md compares it with exact solutions.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, allow_negative_numbers = true)]
 pub(in crate::cli) struct SynthSlider {

@@ -132,7 +132,7 @@ impl Approximate {
         let waves = self.numbers();
         let distinct = waves.iter().enumerate().all(|(i, a)| waves[..i].iter().all(|b| a != b));
         let valid = !waves.is_empty() && distinct && waves.iter().all(|m| (1..=20).contains(m));
-        let demanded = "a list of numbers of waves, each once and 1 to 20";
+        let demanded = "a list of numbers of waves, each once and 1 to 20; the number of waves of a list in [[approximate.given]] counts too";
         require(valid, "approximate.waves", &waves, demanded)?;
         let demanded = "positive wavelengths, ascending, of which the longest is a multiple, \
                         and amplitudes of 0 or more";

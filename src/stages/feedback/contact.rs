@@ -276,7 +276,7 @@ impl<'a> Ladder<'a> {
     }
 }
 
-/// The contact from some factors, or from none where that leads nowhere.
+/// Solves the fixed point from given factors; if that does not converge, starts again from the rubber without factors.
 fn effective(
     setup: FeedbackSetup,
     pressure: f64,

@@ -92,7 +92,7 @@ pub(super) fn isothermal(rows: &[FrictionRow], rubber: &RubberModel) -> Option<S
     let elastic = matches!(rubber, RubberModel::Maxwell(rubber) if rubber.branches.is_empty());
     (fastest > WARM_MM_S && !elastic).then(|| {
         format!(
-            "the tables are isothermal also above 0.1 m/s (here up to {fastest} mm/s), where the heat of the contact changes \
+            "the tables are isothermal also above 0.1 m/s (speeds here reach {fastest} mm/s), where frictional heat changes \
              friction: [feedback.heat] solves profiles with it"
         )
     })

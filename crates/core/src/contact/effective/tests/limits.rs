@@ -5,9 +5,9 @@ use crate::contact::areal::{ArealContact, ArealSetup, ArealSurface, Sliding};
 use crate::rubber::Viscoelastic;
 
 /// Softening by `1 / (1 + (e / e_c))` of the storage modulus, and by `depth` as much of the loss modulus.
-struct Softening {
-    critical: f64,
-    depth: f64,
+pub(super) struct Softening {
+    pub critical: f64,
+    pub depth: f64,
 }
 
 impl StrainLaw for Softening {

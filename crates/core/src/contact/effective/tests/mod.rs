@@ -4,9 +4,11 @@
 //! |---|---|
 //! | `limits` | the plain contact, monotone laws, input that has to be refused |
 //! | `areal` | the line, and the friction of areal contacts |
+//! | `full_contact` | closed forms of one sine in full contact |
 //! | `heat` | power of the contact, temperatures over speed |
 
 mod areal;
+mod full_contact;
 mod heat;
 mod limits;
 
