@@ -6,6 +6,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// More than ten times the iterations of a converging fit.
 const MAXIMUM_ITERATIONS: u64 = 200;
+/// Conjugate gradients end after as many steps as there are parameters but for round-off, which can keep a flat direction
+/// from ever reaching the tolerance.
+const MAXIMUM_INNER_ITERATIONS: u64 = 1000;
 /// Relative to the largest singular value of the Jacobian; parameters do not change along flatter directions.
 const FLAT: f64 = 1e-12;
 /// Of the offset, see [`Minimum::offset`]; a thousandth of a standard error.
@@ -76,6 +79,7 @@ impl<P: LeastSquares> Hessian for MeanSquare<'_, P> {
 /// Minimises the sum of squares from a start; `None` if a residual is not a number.
 pub(crate) fn minimise<P: LeastSquares>(problem: &P, start: DVector<f64>) -> Option<Minimum> {
     let steihaug = Steihaug::new().with_epsilon(1e-12).ok()?;
+    let steihaug = steihaug.with_max_iters(MAXIMUM_INNER_ITERATIONS);
     let run = Executor::new(MeanSquare(problem), TrustRegion::new(steihaug))
         .configure(|state| state.param(start).max_iters(MAXIMUM_ITERATIONS).target_cost(0.0))
         .timer(false)

@@ -10,6 +10,9 @@ const SAME: f64 = 1e-6;
 const PLATEAU: f64 = 3.2;
 /// A modulus further from its neighbours than this, relative, is left out, unless all scatter as much.
 const OUTLIER: f64 = 0.1;
+/// Largest curvature of the logarithm of a modulus over that of the strain: `m²` of Kraus' law with an exponent of 0.7. A line
+/// through two points of a smooth sweep misses a third one by no more than half of this times its distances from both.
+const CURVATURE: f64 = 0.5;
 /// Multiple of the limit at an end, where lines are extrapolated.
 const AT_AN_END: f64 = 2.0;
 /// Multiple of the median distance, in standard deviations of a normal distribution, beyond which a point is an outlier.
@@ -91,43 +94,70 @@ impl StrainSweep {
 }
 
 /// Which points lie off the lines through their neighbours in either modulus, by more than the scatter of all (in the manner
-/// of Hampel's identifier, J. Am. Stat. Assoc. 69, 383, 1974, doi:10.1080/01621459.1974.10482962).
+/// of Hampel's identifier, J. Am. Stat. Assoc. 69, 383, 1974, doi:10.1080/01621459.1974.10482962) and by more than a smooth
+/// sweep bends between strains so far apart.
 fn outliers(points: &[StrainPoint]) -> Vec<bool> {
     let x: Vec<f64> = points.iter().map(|point| point.strain.ln()).collect();
     let beyond = |of: fn(&StrainPoint) -> f64| {
         let y: Vec<f64> = points.iter().map(|point| of(point).ln()).collect();
-        let distances: Vec<f64> = (0..y.len()).map(|k| distance(&x, &y, k)).collect();
-        let limit = OUTLIER.max(OUTLIER_SCATTER * median(distances.clone()));
-        let is_beyond = |(k, distance): (usize, &f64)| {
+        let lines: Vec<Line> = (0..y.len()).map(|k| Line::of_neighbours(&x, &y, k)).collect();
+        let distances = lines.iter().map(|line| line.distance).collect();
+        let limit = OUTLIER.max(OUTLIER_SCATTER * median(distances));
+        let is_beyond = |(k, line): (usize, &Line)| {
             let at_an_end = k == 0 || k + 1 == x.len();
-            *distance > if at_an_end { AT_AN_END * limit } else { limit }
+            let limit = if at_an_end { AT_AN_END * limit } else { limit };
+            line.distance > limit.max(line.bend)
         };
-        distances.iter().enumerate().map(is_beyond).collect::<Vec<bool>>()
+        lines.iter().enumerate().map(is_beyond).collect::<Vec<bool>>()
     };
     let storage = beyond(|point| point.storage_modulus);
     let loss = beyond(|point| point.loss_modulus);
     storage.iter().zip(loss).map(|(a, b)| *a || b).collect()
 }
 
-/// Distance of a value from the median of the lines through pairs of neighbours; one outlier among them is in less than half
-/// of the pairs. At an end the neighbours are the five on the one side that there is.
-fn distance(x: &[f64], y: &[f64], k: usize) -> f64 {
-    const AROUND: [(isize, isize); 10] =
-        [(-1, 1), (-2, 2), (-2, -1), (1, 2), (-3, -1), (1, 3), (-1, 2), (-2, 1), (-3, 2), (-2, 3)];
-    const BESIDE: [(isize, isize); 10] =
-        [(1, 2), (1, 3), (1, 4), (1, 5), (2, 3), (2, 4), (2, 5), (3, 4), (3, 5), (4, 5)];
-    let pairs = match k {
-        0 => BESIDE,
-        _ if k + 1 == x.len() => BESIDE.map(|(a, b)| (-a, -b)),
-        _ => AROUND,
-    };
-    let index = |offset: isize| k.checked_add_signed(offset).filter(|index| *index < x.len());
-    let line = |(a, b): (isize, isize)| {
-        let (a, b) = (index(a)?, index(b)?);
-        Some(y[a] + (x[k] - x[a]) / (x[b] - x[a]) * (y[b] - y[a]))
-    };
-    let predicted: Vec<f64> = pairs.into_iter().filter_map(line).collect();
-    if predicted.is_empty() { 0.0 } else { (y[k] - median(predicted)).abs() }
+/// A value beside the lines through pairs of its neighbours.
+struct Line {
+    /// Distance of the value from the median of the lines.
+    distance: f64,
+    /// The largest distance that the curvature of a smooth sweep explains: the median over the lines.
+    bend: f64,
+}
+
+impl Line {
+    /// One outlier among the neighbours is in less than half of the pairs. At an end the neighbours are the five on the one
+    /// side that there is.
+    fn of_neighbours(x: &[f64], y: &[f64], k: usize) -> Self {
+        const AROUND: [(isize, isize); 10] = [
+            (-1, 1),
+            (-2, 2),
+            (-2, -1),
+            (1, 2),
+            (-3, -1),
+            (1, 3),
+            (-1, 2),
+            (-2, 1),
+            (-3, 2),
+            (-2, 3),
+        ];
+        const BESIDE: [(isize, isize); 10] =
+            [(1, 2), (1, 3), (1, 4), (1, 5), (2, 3), (2, 4), (2, 5), (3, 4), (3, 5), (4, 5)];
+        let pairs = match k {
+            0 => BESIDE,
+            _ if k + 1 == x.len() => BESIDE.map(|(a, b)| (-a, -b)),
+            _ => AROUND,
+        };
+        let index = |offset: isize| k.checked_add_signed(offset).filter(|index| *index < x.len());
+        let pairs = || pairs.into_iter().filter_map(|(a, b)| index(a).zip(index(b)));
+        if pairs().next().is_none() {
+            return Self { distance: 0.0, bend: 0.0 };
+        }
+        let line = |(a, b): (usize, usize)| y[a] + (x[k] - x[a]) / (x[b] - x[a]) * (y[b] - y[a]);
+        let bend = |(a, b): (usize, usize)| 0.5 * CURVATURE * ((x[k] - x[a]) * (x[k] - x[b])).abs();
+        Self {
+            distance: (y[k] - median(pairs().map(line).collect())).abs(),
+            bend: median(pairs().map(bend).collect()),
+        }
+    }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

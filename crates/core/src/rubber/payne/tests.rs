@@ -109,6 +109,52 @@ fn outliers_repeated_and_unsorted_strains_are_dealt_with() {
 }
 
 #[test]
+fn coarse_smooth_sweeps_keep_all_strains() {
+    // A plateau in small steps and the fall in large ones: lines through the plateau say nothing of the end.
+    let plateau = [1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 1e-1];
+    let mixed = [1e-4, 2e-4, 3e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.02, 0.06, 0.2];
+    for (strains, exponent, loss_peak) in
+        [(&plateau[..], 0.62, 0.3), (&plateau, 0.4, 0.0), (&mixed, 0.7, 0.1), (&mixed, 0.5, 0.6)]
+    {
+        let law = law_of(Kraus { exponent, loss_peak, ..LAW });
+        let mut coarse = sweep(&law, 20.0);
+        coarse.points = strains
+            .iter()
+            .map(|strain| StrainPoint {
+                strain: *strain,
+                storage_modulus: 12.0 * law.storage_factor(*strain),
+                loss_modulus: 1.8 * law.loss_factor(*strain),
+            })
+            .collect();
+        let found = PayneTable::fit(&coarse).unwrap();
+        assert_eq!(found.left_out, [], "{exponent} {loss_peak}");
+        assert_eq!(found.table.rows().last().unwrap()[0], strains[strains.len() - 1]);
+    }
+}
+
+#[test]
+fn a_fit_with_a_flat_direction_ends() {
+    // Six strains, the last far from the others, in six digits: conjugate gradients never meet their tolerance.
+    let rows = [
+        [0.001, 11.5368, 2.00922],
+        [0.002, 10.9985, 2.05371],
+        [0.005, 9.51248, 2.02558],
+        [0.01, 7.723, 1.86489],
+        [0.03, 4.79831, 1.40025],
+        [0.3, 2.59757, 0.744816],
+    ];
+    let point = |[strain, storage_modulus, loss_modulus]: [f64; 3]| StrainPoint {
+        strain,
+        storage_modulus,
+        loss_modulus,
+    };
+    let points = rows.map(point).to_vec();
+    let sweep = StrainSweep { temperature_c: None, frequency_hz: None, points };
+    let found = Kraus::fit(&sweep).unwrap();
+    approx::assert_relative_eq!(found.law.critical_strain, 0.012, max_relative = 1e-3);
+}
+
+#[test]
 fn factors_are_interpolated_over_temperature() {
     let hot = Kraus { storage_limit: 0.4, ..LAW };
     let payne = Payne::new(vec![
