@@ -4,6 +4,8 @@ use crate::error_kind::{ErrorKind, HasKind};
 use crate::files;
 use crate::rubber::HOTTEST_C;
 use crate::units::Units;
+use asperity_scans::cells::{UnclearMark, decimal_mark, lines, number, split_cells};
+use asperity_scans::description::DecimalMark;
 use std::path::{Path, PathBuf};
 
 /// Friction coefficients that a measurement may have.
@@ -85,8 +87,11 @@ const NAMES: [(&str, Quantity); 6] = [
 const HEADER: &str = "the columns must have names in a line without `#`: speed_mm_s, speed_m_s or log10_speed_m_s, and friction; \
      optional are temperature_c and pressure_mpa";
 
+/// Where something is wrong, if it is in one line, and what.
+type Located = (Option<usize>, String);
+
 /// Reads measured friction: text with a header, columns separated by commas, semicolons, tabs or blanks; lines that begin with `#` are
-/// comments. Columns with other names are not read. `columns` are the names of the columns of a file that has no header, none for
+/// comments. Decimal commas are read where columns are not separated by commas, and names may be in quotes. Columns with other names are not read. `columns` are the names of the columns of a file that has no header, none for
 /// one that has.
 ///
 /// # Errors
@@ -102,37 +107,85 @@ pub fn read_measured(path: &Path, columns: &[String]) -> Result<MeasuredFile, Me
     parse(&text, columns).map_err(|(line, text)| problem(line, text))
 }
 
-fn parse(text: &str, names: &[String]) -> Result<MeasuredFile, (Option<usize>, String)> {
+fn parse(text: &str, names: &[String]) -> Result<MeasuredFile, Located> {
     let mut rows = (1..)
-        .zip(text.lines())
+        .zip(lines(text))
         .map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')))
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
         .peekable();
     let (number, header) =
         rows.peek().copied().ok_or_else(|| (None, format!("the file is empty; {HEADER}")))?;
-    let separator = [';', '\t', ','].into_iter().find(|mark| header.contains(*mark));
-    let cells = |line: &str| -> Vec<String> {
-        match separator {
-            Some(mark) => line.split(mark).map(|cell| cell.trim().to_owned()).collect(),
-            None => line.split_whitespace().map(str::to_owned).collect(),
-        }
-    };
+    let separator = separator(header, names.len());
     let columns = if names.is_empty() {
         rows.next();
-        columns(&cells(header)).map_err(|text| (Some(number), text))?
+        columns(&cells(header, separator)).map_err(|text| (Some(number), text))?
     } else {
         columns(names).map_err(|text| (None, text))?
     };
+    let rows: Vec<(usize, Vec<String>)> =
+        rows.map(|(number, line)| (number, cells(line, separator))).collect();
+    if let Some((number, row)) = rows.iter().find(|(_, row)| row.len() != columns.len()) {
+        return Err((Some(*number), miscounted(row.len(), columns.len(), separator)));
+    }
+    let mark = mark(&rows, &columns)?;
     let mut file = MeasuredFile { points: Vec::new(), lines: Vec::new() };
-    for (number, line) in rows {
-        let point = point(&columns, &cells(line)).map_err(|text| (Some(number), text))?;
-        file.points.push(point);
+    for (number, row) in rows {
+        file.points.push(point(&columns, &row, mark).map_err(|text| (Some(number), text))?);
         file.lines.push(number);
     }
     if file.points.is_empty() {
         return Err((None, "there is a header and no measurement below it".into()));
     }
     Ok(file)
+}
+
+/// The separator of a file by its first line, which is a header, or a row of so many columns; `None` for blanks.
+fn separator(first: &str, columns: usize) -> Option<char> {
+    let found = || [';', '\t', ','].into_iter().filter(|mark| first.contains(*mark));
+    if columns == 0 {
+        return found().next();
+    }
+    // A comma in a row may be a decimal comma: `0,1 0,85` has two cells by blanks, and `0.1, 0.85` by commas.
+    let fits = |mark: &Option<char>| {
+        let cells = cells(first, *mark);
+        let single = |cell: &String| !cell.contains(char::is_whitespace) && !cell.ends_with(',');
+        cells.len() == columns && cells.iter().all(single)
+    };
+    found().map(Some).chain([None]).find(fits).unwrap_or(found().next())
+}
+
+fn cells(line: &str, separator: Option<char>) -> Vec<String> {
+    match separator {
+        Some(mark) => split_cells(line, mark),
+        None => line.split_whitespace().map(|cell| cell.trim_matches('"').to_owned()).collect(),
+    }
+}
+
+fn miscounted(found: usize, needed: usize, separator: Option<char>) -> String {
+    let advice = match separator {
+        Some(',') if found > needed => {
+            ": is a decimal comma also what separates the columns? Separate the columns by semicolons, or write decimals with a point"
+        }
+        _ => ": complete the line, or leave it out",
+    };
+    format!("{found} cells where the header has {needed}{advice}")
+}
+
+/// The decimal mark of the columns that are read.
+fn mark(
+    rows: &[(usize, Vec<String>)],
+    columns: &[Option<Quantity>],
+) -> Result<DecimalMark, Located> {
+    let read = rows.iter().flat_map(|(number, row)| {
+        let own = row.iter().zip(columns).filter(|(_, quantity)| quantity.is_some());
+        own.map(|(cell, _)| (*number as u64, cell.as_str()))
+    });
+    decimal_mark(read).map_err(|unclear| match unclear {
+        UnclearMark::Mixed { line, .. } => (usize::try_from(line).ok(), unclear.to_string()),
+        UnclearMark::Thousands { line, .. } => {
+            (usize::try_from(line).ok(), format!("{unclear}: write numbers without commas"))
+        }
+    })
 }
 
 /// The quantity of every column.
@@ -179,10 +232,11 @@ fn columns(header: &[String]) -> Result<Vec<Option<Quantity>>, String> {
     Ok(columns)
 }
 
-fn point(columns: &[Option<Quantity>], cells: &[String]) -> Result<MeasuredPoint, String> {
-    if cells.len() != columns.len() {
-        return Err(format!("{} cells where the header has {}", cells.len(), columns.len()));
-    }
+fn point(
+    columns: &[Option<Quantity>],
+    cells: &[String],
+    mark: DecimalMark,
+) -> Result<MeasuredPoint, String> {
     let mut point = MeasuredPoint {
         speed_mm_s: f64::NAN,
         friction: f64::NAN,
@@ -191,7 +245,7 @@ fn point(columns: &[Option<Quantity>], cells: &[String]) -> Result<MeasuredPoint
     };
     for (column, cell) in columns.iter().zip(cells) {
         let Some(quantity) = column else { continue };
-        let value: f64 = cell.parse().map_err(|_| format!("`{cell}` is not a number"))?;
+        let value = number(cell, mark).ok_or_else(|| format!("`{cell}` is not a number"))?;
         if !value.is_finite() {
             return Err(format!("`{cell}` is not a finite number: leave the line out"));
         }
@@ -243,6 +297,43 @@ mod tests {
         let named = parse("# no header\n-3 0.7\n", &names).unwrap();
         assert_eq!((named.lines, &named.points), (vec![2], &blanks.points));
         approx::assert_relative_eq!(blanks.points[0].speed_mm_s, 1.0, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn decimal_commas_quotes_and_returns_are_read() {
+        let plain = parse("speed_mm_s,friction,temperature_c\n0.1,0.85,20\n1,1.25,21.5\n", &[]);
+        let plain = plain.unwrap();
+        for text in [
+            "speed_mm_s;friction;temperature_c\n0,1;0,85;20\n1;1,25;21,5\n",
+            "\"speed_mm_s\";\"friction\";\"temperature_c\"\r\n\"0,1\";\"0,85\";20\r\n1;1,25;21,5\r\n",
+            "\"speed_mm_s\",\"friction\",\"temperature_c\"\n0.1,0.85,20\n1,1.25,21.5\n",
+            "\"speed_mm_s\" \"friction\" \"temperature_c\"\n0,1 0,85 20\n1 1,25 21,5\n",
+            "speed_mm_s\tfriction\ttemperature_c\r0,1\t0,85\t20\r1\t1,25\t21,5\r",
+        ] {
+            assert_eq!(parse(text, &[]).unwrap(), plain, "{text}");
+        }
+        let names = ["speed_mm_s", "friction", "temperature_c"].map(str::to_owned);
+        let bare = parse("0,1 0,85 20\n1 1,25 21,5\n", &names).unwrap();
+        assert_eq!(bare.points, plain.points);
+        let bare = parse("0.1, 0.85, 20\n1, 1.25, 21.5\n", &names).unwrap();
+        assert_eq!(bare.points, plain.points);
+        // A comma in a column that is not read says nothing.
+        let note = "speed_mm_s;note;friction\n0.1;dry, hot;0.85\n";
+        assert_eq!(parse(note, &[]).unwrap().points[0].friction, 0.85);
+    }
+
+    #[test]
+    fn marks_with_two_readings_are_refused_with_advice() {
+        let error = |text: &str| parse(text, &[]).unwrap_err();
+        let (line, text) = error("speed_mm_s,friction\n0,1,0,85\n");
+        assert!(
+            line == Some(2) && text.contains("4 cells") && text.contains("semicolons"),
+            "{text}"
+        );
+        let (line, text) = error("speed_mm_s;friction\n100;1\n1,000;1\n");
+        assert!(line == Some(3) && text.contains("`1,000` may have a decimal comma"), "{text}");
+        let (line, text) = error("speed_mm_s;friction\n0.1;0,85\n");
+        assert!(line == Some(2) && text.contains("`0,85` has a comma"), "{text}");
     }
 
     #[test]

@@ -11,6 +11,7 @@
 //! | [`mod@file`] | files of instruments |
 //! | [`description`] | the description of a text file |
 //! | `text`, [`spreadsheet`] | text files and sheets of workbooks, read as a description says |
+//! | `cells` | lines, cells and decimal mark of a table of text |
 //! | `decode`, `lines`, `last_number`, `thousands` | lines and words of a text; numbers that were cut off; separated thousands |
 //! | `lattice` | the grid of a height map whose points are listed one by one |
 //! | [`text_shape`] | what a text looks like, and the description that would read it |
@@ -20,6 +21,7 @@
 
 #[cfg(test)]
 mod cases;
+pub mod cells;
 mod decode;
 pub mod description;
 pub mod error;

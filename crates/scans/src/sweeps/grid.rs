@@ -1,6 +1,7 @@
 //! A file as rows of cells: text with one of several separators, or a sheet of a workbook.
 
 use super::{TableOptions, read_limited};
+use crate::cells::{lines, split_cells};
 use crate::description::Separator;
 use crate::text_shape::encoding::decode;
 use calamine::{Data, Reader, Xlsx};
@@ -70,7 +71,7 @@ pub(super) enum GridError {
 /// A text by the separator, or by each that may be meant.
 pub(super) fn of_text(text: &str, separator: Option<Separator>) -> Vec<Grid> {
     let grid = |separator: Separator| {
-        let rows = text.trim_start_matches('\u{feff}').lines().zip(1_u64..);
+        let rows = lines(text.trim_start_matches('\u{feff}')).into_iter().zip(1_u64..);
         let rows = rows.filter(|(line, _)| !line.trim().is_empty());
         Grid {
             seen_as: match separator {
@@ -97,7 +98,7 @@ fn row(text: &str, line: u64, separator: Separator) -> Row {
             let text = if comment { without_remark(text) } else { text };
             text.trim_start_matches([' ', '#']).split_whitespace().map(str::to_owned).collect()
         }
-        Some(character) => split(text.trim_end_matches('\r'), character),
+        Some(character) => split_cells(text.trim_end_matches('\r'), character),
     };
     Row { line, comment, cells }
 }
@@ -109,30 +110,6 @@ fn without_remark(text: &str) -> &str {
     match inner {
         Some((names, remark)) if remark.split_whitespace().count() > 2 => names,
         _ => text,
-    }
-}
-
-/// Cells of a line. A quote counts only where it opens a cell, for it also stands for the loss
-/// modulus E".
-fn split(text: &str, separator: char) -> Vec<String> {
-    let mut cells = Vec::new();
-    let mut rest = text;
-    loop {
-        let start = rest.trim_start_matches(|c: char| c == ' ' || c == '\t' && c != separator);
-        let quoted = start.strip_prefix('"').and_then(|inner| {
-            let end = inner.find('"')?;
-            let after = inner[end + 1..].trim_start_matches(' ');
-            (after.is_empty() || after.starts_with(separator)).then_some((&inner[..end], after))
-        });
-        let (cell, after) = match quoted {
-            Some((cell, after)) => (cell, after),
-            None => rest.split_at(rest.find(separator).unwrap_or(rest.len())),
-        };
-        cells.push(cell.trim().to_owned());
-        match after.strip_prefix(separator) {
-            Some(next) => rest = next,
-            None => return cells,
-        }
     }
 }
 
@@ -186,17 +163,5 @@ fn cell_text(cell: &Data) -> String {
         Data::String(text) => text.trim().to_owned(),
         Data::DateTime(_) | Data::DateTimeIso(_) | Data::DurationIso(_) => "(a date)".into(),
         other => other.to_string(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quotes_hold_cells_together_only_where_they_open_one() {
-        assert_eq!(split("f/Hz,\"1,5\", 2 ", ','), ["f/Hz", "1,5", "2"]);
-        assert_eq!(split("f;E\";T", ';'), ["f", "E\"", "T"]);
-        assert_eq!(split("\t1\t\t2", '\t'), ["", "1", "", "2"]);
     }
 }

@@ -4,8 +4,8 @@ use super::grid::Grid;
 use super::layout::{Column, Layout, Wanted, next_layout};
 use super::names::{Quantity, Unit};
 use super::{GivenShift, Located, SweepPoint, TableOptions};
+use crate::cells::{UnclearMark, decimal_mark, number};
 use crate::description::DecimalMark;
-use crate::thousands::thousands_mark;
 use asperity_core::rubber::ZERO_CELSIUS;
 use std::f64::consts::TAU;
 
@@ -77,26 +77,19 @@ impl Numbers {
             return Ok(Self { mark });
         }
         let cells =
-            || rows.iter().flat_map(|row| row.cells.iter().map(|(_, text)| (row.line, text)));
-        let Some((line, text)) = cells().find(|(_, text)| text.contains(',')) else {
-            return Ok(Self { mark: DecimalMark::Point });
-        };
-        let thousands = |text: &str| thousands_mark(text, DecimalMark::Point) == Some(',');
-        if cells().any(|(_, text)| text.contains('.')) {
-            let problem = format!(
-                "`{text}` has a comma and other numbers have a point: write numbers without marks between \
-                 thousands and with one decimal mark"
-            );
-            return Err((Some(line), problem));
+            rows.iter().flat_map(|row| row.cells.iter().map(|(_, text)| (row.line, text.as_str())));
+        match decimal_mark(cells) {
+            Ok(mark) => Ok(Self { mark }),
+            Err(unclear @ UnclearMark::Mixed { line, .. }) => {
+                Err((Some(line), unclear.to_string()))
+            }
+            Err(unclear @ UnclearMark::Thousands { line, .. }) => Err((
+                Some(line),
+                format!(
+                    "{unclear}: say which with --decimal-mark , or write numbers without commas"
+                ),
+            )),
         }
-        if cells().filter(|(_, text)| text.contains(',')).all(|(_, text)| thousands(text)) {
-            let problem = format!(
-                "`{text}` may have a decimal comma or a comma between thousands: say which with --decimal-mark , \
-                 or write numbers without commas"
-            );
-            return Err((Some(line), problem));
-        }
-        Ok(Self { mark: DecimalMark::Comma })
     }
 
     pub fn comma(&self) -> bool {
@@ -118,24 +111,19 @@ impl Numbers {
 
     fn number(&self, column: &Column, text: &str) -> Result<f64, String> {
         let name = &column.name;
-        let plain = match self.mark {
-            DecimalMark::Point => text.to_owned(),
-            DecimalMark::Comma if text.contains('.') => String::new(),
-            DecimalMark::Comma => text.replace(',', "."),
-        };
-        match plain.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            Ok(_) => Err(format!(
+        match number(text, self.mark) {
+            Some(value) if value.is_finite() => Ok(value),
+            Some(_) => Err(format!(
                 "{name} is {text}, it must be a finite number: correct the row or leave it out"
             )),
-            Err(_) if text.contains([',', '.']) && text.contains(|c: char| c.is_ascii_digit()) => {
+            None if text.contains([',', '.']) && text.contains(|c: char| c.is_ascii_digit()) => {
                 Err(format!(
                     "{name} is `{text}`, which is not a number with a {}: say the mark with --decimal-mark, and \
                      write numbers without marks between thousands",
                     self.mark_name()
                 ))
             }
-            Err(_) => Err(format!(
+            None => Err(format!(
                 "{name} is `{text}`, which is not a number: correct the row or leave it out"
             )),
         }
@@ -150,6 +138,11 @@ impl Record {
     /// A value as written in the file.
     pub fn text(&self, quantity: Quantity) -> &str {
         self.value(quantity).map_or("", |(_, text, _)| text.as_str())
+    }
+
+    /// The name of a column.
+    pub fn name(&self, quantity: Quantity) -> &str {
+        self.value(quantity).map_or("", |(column, ..)| column.name.as_str())
     }
 
     /// A value that must be positive, in SI.

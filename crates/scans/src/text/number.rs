@@ -1,5 +1,6 @@
 //! Cells of a text file as numbers.
 
+use crate::cells::number as parse;
 use crate::description::DecimalMark;
 use crate::thousands::thousands_mark;
 use crate::{ScanProblem, TextFormat};
@@ -70,14 +71,6 @@ impl Cells {
         } else {
             ScanProblem::NotANumber { text, hint }
         }
-    }
-}
-
-fn parse(cell: &str, mark: DecimalMark) -> Option<f64> {
-    match mark {
-        DecimalMark::Point => cell.parse().ok(),
-        DecimalMark::Comma if cell.contains('.') => None,
-        DecimalMark::Comma => cell.replacen(',', ".", 1).parse().ok(),
     }
 }
 
