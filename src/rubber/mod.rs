@@ -28,6 +28,6 @@ pub mod fit {
     pub use asperity_core::rubber::fit::*;
     pub use asperity_scans::sweeps::{
         DescribedColumn, StrainUnit, SweepTable, TableError, TableOptions, doubts, parse_sweeps,
-        read_master_curve, read_shift_factors, read_strain_sweeps, read_sweeps,
+        read_master_curve, read_shift_factors, read_strain_sweeps, read_sweeps, strain_doubts,
     };
 }

@@ -10,7 +10,7 @@ use crate::units::Units;
 use asperity_core::rubber::fit::{GivenShift, ModulusKind, SweepPoint};
 use asperity_scans::sweeps::{
     DescribedColumn, StrainUnit, TableOptions, read_master_curve, read_shift_factors,
-    read_strain_sweeps,
+    read_strain_sweeps, strain_doubts,
 };
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -229,6 +229,7 @@ fn swept(
         let key = "payne.strain_sweep";
         RubberFileError::Table { path: path.to_path_buf(), key, source }
     })?;
+    notes.extend(strain_doubts(&sweeps).into_iter().map(|doubt| format!("{named}: {doubt}")));
     let mut left_out = 0;
     let mut curves = Vec::new();
     for sweep in &mut sweeps {

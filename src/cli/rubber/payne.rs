@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::output::{json, note, print, refuse_existing, significant, write_file};
 use crate::cli::solve::refuse_to_overwrite;
-use asperity::rubber::fit::{StrainUnit, TableOptions, read_strain_sweeps};
+use asperity::rubber::fit::{StrainUnit, TableOptions, read_strain_sweeps, strain_doubts};
 use asperity::rubber::payne::{
     Kraus, KrausFit, Payne, PayneCurve, PayneTable, StrainSweep, TableFit, elongation_of_shear,
 };
@@ -108,6 +108,9 @@ impl PayneFit {
             Unit::Fraction => StrainUnit::Fraction,
         });
         let mut sweeps = read_strain_sweeps(&self.sweep, &TableOptions::default(), unit)?;
+        for doubt in strain_doubts(&sweeps) {
+            note(quiet, format_args!("warning: {}: {doubt}", self.sweep.display()));
+        }
         let (mut rows, mut curves) = (Vec::new(), Vec::new());
         for sweep in &mut sweeps {
             if self.strain_kind == StrainKind::Shear {

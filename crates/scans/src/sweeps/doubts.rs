@@ -3,6 +3,7 @@
 use super::SweepTable;
 use asperity_core::rubber::HOTTEST_C;
 use asperity_core::rubber::fit::{ModulusKind, Sweep, SweepPoint};
+use asperity_core::rubber::payne::StrainSweep;
 use std::f64::consts::TAU;
 
 /// Stiffer than any rubber glass, some 3 GPa, by far; in Pa.
@@ -25,6 +26,21 @@ pub fn doubts(table: &SweepTable, kind: ModulusKind) -> Vec<String> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// Warnings of strain sweeps, each with what to do.
+pub fn strain_doubts(sweeps: &[StrainSweep]) -> Vec<String> {
+    let lossy = |sweep: &&StrainSweep| {
+        sweep.points.iter().all(|point| point.loss_modulus > point.storage_modulus)
+    };
+    let doubt = |sweep: &StrainSweep| {
+        let at = sweep.temperature_c.map_or(String::new(), |celsius| format!(" at {celsius} °C"));
+        format!(
+            "the loss modulus is larger than the storage modulus at every strain{at}, as of no filled rubber above its glass \
+             transition: check the columns, are they exchanged?"
+        )
+    };
+    sweeps.iter().filter(lossy).map(doubt).collect()
 }
 
 fn points(sweeps: &[Sweep]) -> impl Iterator<Item = &SweepPoint> {

@@ -24,7 +24,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-pub use doubts::doubts;
+pub use doubts::{doubts, strain_doubts};
 pub use layout::DescribedColumn;
 pub use tables::{StrainUnit, read_master_curve, read_strain_sweeps};
 

@@ -12,6 +12,9 @@ use std::path::Path;
 /// Frequencies of one strain sweep differ by no more, relative.
 const SAME_FREQUENCY: f64 = 0.02;
 
+/// Largest strain that is stated in parts of one: beyond it the numbers are per cent.
+const LARGEST_FRACTION: f64 = 2.0;
+
 /// Unit of strains whose header does not say it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StrainUnit {
@@ -92,28 +95,52 @@ struct Row {
 }
 
 fn row(record: &Record, unit: Option<StrainUnit>) -> Result<Row, Located> {
-    let (in_header, strain) = record.strain()?;
-    let unit = match in_header {
-        Some(Unit::Percent) => Some(StrainUnit::Percent),
-        Some(_) => Some(StrainUnit::Fraction),
-        None => unit,
-    };
-    let size = match unit {
-        Some(StrainUnit::Percent) => 0.01,
-        Some(StrainUnit::Fraction) => 1.0,
-        None => {
-            let problem = "the column of the strain has no unit, and units are never guessed: name it strain_percent or \
-                           strain_fraction, or say which (strain_unit in a rubber file, --strain-unit)";
-            return Err((None, problem.into()));
-        }
-    };
+    let strain = strain(record, unit)?;
     let [storage_modulus, loss_modulus] = record.moduli()?;
     Ok(Row {
         line: record.line,
         temperature_c: record.temperature_c()?,
         frequency_hz: record.angular_frequency()?.map(|frequency| frequency / TAU),
-        point: StrainPoint { strain: strain * size, storage_modulus, loss_modulus },
+        point: StrainPoint { strain, storage_modulus, loss_modulus },
     })
+}
+
+/// The strain of a row in parts of one.
+fn strain(record: &Record, stated: Option<StrainUnit>) -> Result<f64, Located> {
+    let (in_header, strain) = record.strain()?;
+    let in_header = in_header.map(|unit| match unit {
+        Unit::Percent => StrainUnit::Percent,
+        _ => StrainUnit::Fraction,
+    });
+    let name = record.name(Quantity::Strain);
+    if let (Some(own), Some(stated)) = (in_header, stated)
+        && own != stated
+    {
+        let problem = format!(
+            "the column `{name}` is in {}, and strain_unit (--strain-unit) says {}: leave it out, or correct the header",
+            own.name(),
+            stated.name()
+        );
+        return Err((None, problem));
+    }
+    match in_header.or(stated) {
+        Some(StrainUnit::Percent) => Ok(0.01 * strain),
+        Some(StrainUnit::Fraction) if strain > LARGEST_FRACTION => {
+            let text = record.text(Quantity::Strain);
+            let problem = format!(
+                "the strain {text} as a fraction is {:.0} %: if `{name}` is in per cent, name the column strain_percent, or \
+                 say strain_unit = \"percent\" in a rubber file, --strain-unit percent in the command",
+                100.0 * strain
+            );
+            Err((Some(record.line), problem))
+        }
+        Some(StrainUnit::Fraction) => Ok(strain),
+        None => {
+            let problem = "the column of the strain has no unit, and units are never guessed: name it strain_percent or \
+                           strain_fraction, or say which (strain_unit in a rubber file, --strain-unit)";
+            Err((None, problem.into()))
+        }
+    }
 }
 
 fn sweep(rows: &[Row]) -> Result<StrainSweep, Located> {
@@ -186,6 +213,18 @@ mod tests {
         assert_eq!(fraction[1].points[1].strain, 1.0);
         let two = "strain_percent,storage_mpa,loss_mpa,frequency_hz\n0.1,5,1,1\n1,4,0.9,10\n";
         assert!(read(two, None).unwrap_err().contains("line 3: the sweep is at 1 and at 10 Hz"));
+        // 150 % typed as 150 in a column of fractions, and a header that says otherwise than the option.
+        let large = "strain_fraction,storage_mpa,loss_mpa\n0.1,5,1\n150,4,0.9\n";
+        let refused = read(large, None).unwrap_err();
+        assert!(refused.contains("line 3: the strain 150 as a fraction is 15000 %"), "{refused}");
+        assert!(refused.contains("strain_percent") && refused.contains("--strain-unit percent"));
+        assert!(read("strain,storage_mpa,loss_mpa\n3,5,1\n", Some(StrainUnit::Fraction)).is_err());
+        assert!(read(&large.replace("fraction", "percent"), None).is_ok());
+        let refused = read(&large.replace("150", "1.5"), Some(StrainUnit::Percent)).unwrap_err();
+        assert!(
+            refused.contains("is in fraction") && refused.contains("says percent"),
+            "{refused}"
+        );
         let negative = "strain_percent,storage_mpa,loss_mpa\n-0.1,5,1\n";
         assert!(read(negative, None).unwrap_err().contains("strain_percent is -0.1"));
     }
