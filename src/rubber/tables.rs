@@ -43,11 +43,12 @@ pub(super) fn moduli(
             ));
         }
     };
-    let factor = kind.factor(file.poisson_ratio);
+    let ratio = file.poisson_ratio;
+    let factor = kind.factor(ratio);
     let rows = match &file.master_curve {
         Some(named) => {
             let options = TableOptions { columns: columns(path, file)?, ..TableOptions::default() };
-            read_master_curve(&beside(path, named), &options, factor).map_err(|source| {
+            read_master_curve(&beside(path, named), &options, kind, ratio).map_err(|source| {
                 RubberFileError::Table { path: path.to_path_buf(), key: "master_curve", source }
             })?
         }

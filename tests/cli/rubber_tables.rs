@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{Outcome, asperity, asperity_at, project};
 use crate::common::Campaign;
-use asperity::rubber::{Rubber, read_rubber_at, read_rubber_data};
+use asperity::rubber::{Rubber, Viscoelastic, read_rubber_at, read_rubber_data};
 
 /// The built-in rubber as a table, ten points a decade from 1 mHz to 1 GHz, and its rubber file.
 fn table(folder: &Path, keys: &str) -> String {
@@ -157,6 +157,37 @@ fn strain_sweeps_become_a_section_of_a_rubber_file() {
     approx::assert_relative_eq!(law.storage_factor(0.015), 0.6, max_relative = 1e-3);
     let table = fit("--strain-kind elongation --strain-unit percent").result();
     assert!(table.contains("rms of E'"), "{table}");
+    // The largest strains are 18 % and stand as 17.8.
+    let fraction = fit("--strain-kind elongation --strain-unit fraction").error(2);
+    assert!(fraction.contains("strain.csv, line") && fraction.contains("--strain-unit percent"));
+    let text = fs::read_to_string(path("strain.csv")).unwrap();
+    let swapped = text.replace("storage_mpa,loss_mpa", "loss_mpa,storage_mpa");
+    fs::write(path("strain.csv"), swapped).unwrap();
+    let warned = fit("--strain-kind elongation --strain-unit percent").stderr;
+    assert!(
+        warned.contains("at every strain at 10 °C") && warned.contains("exchanged"),
+        "{warned}"
+    );
+}
+
+#[test]
+fn a_header_with_the_symbol_of_the_other_modulus_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = table(folder.path(), "");
+    let curve = folder.path().join("curve.csv");
+    let text = fs::read_to_string(&curve).unwrap();
+    fs::write(&curve, text.replace("storage_mpa,loss_mpa", "G'/MPa,G''/MPa")).unwrap();
+    let refused = asperity(&format!("rubber summary {file}")).error(2);
+    for part in ["curve.csv", "`G'/MPa` names a shear modulus", "modulus_kind = \"shear\""] {
+        assert!(refused.contains(part), "{part}: {refused}");
+    }
+    let toml = fs::read_to_string(&file).unwrap();
+    fs::write(&file, toml.replace("youngs", "shear")).unwrap();
+    let shear = read_rubber_data(&file).unwrap();
+    let youngs = Rubber::table_2_1().complex_modulus(10.0);
+    // E = 2 (1 + 0.49) G; cubics between ten points a decade.
+    let found = shear.rubber.complex_modulus(10.0);
+    approx::assert_relative_eq!(found.re, 2.98 * youngs.re, max_relative = 2e-3);
 }
 
 #[test]

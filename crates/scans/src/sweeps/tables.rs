@@ -1,10 +1,10 @@
 //! Tables that a rubber takes as they were measured: a master curve as points, and strain sweeps.
 
-use super::layout::Wanted;
+use super::layout::{Layout, Wanted};
 use super::names::{Quantity, Unit};
 use super::rows::Record;
 use super::{Located, SAME_SWEEP_K, TableError, TableOptions, problem, read_grids, records};
-use asperity_core::rubber::fit::SweepPoint;
+use asperity_core::rubber::fit::{ModulusKind, SweepPoint};
 use asperity_core::rubber::payne::{StrainPoint, StrainSweep};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -24,19 +24,32 @@ pub enum StrainUnit {
     Fraction,
 }
 
-/// Reads a master curve as its points in the order of the file, in SI: frequencies may repeat and be out of order. `factor`
-/// makes Young's modulus of what was measured.
+impl StrainUnit {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Percent => "percent",
+            Self::Fraction => "fraction",
+        }
+    }
+}
+
+/// Reads a master curve as its points of Young's modulus in the order of the file, in SI: frequencies may repeat and be out of
+/// order. Shear moduli are multiplied by `2 (1 + ν)`.
 ///
 /// # Errors
-/// [`TableError`] with the line and what to do; of rows at several temperatures too, which are no master curve.
+/// [`TableError`] with the line and what to do; of rows at several temperatures too, which are no master curve, and of a header
+/// that names the other modulus.
 pub fn read_master_curve(
     path: &Path,
     options: &TableOptions,
-    factor: f64,
+    kind: ModulusKind,
+    poisson_ratio: f64,
 ) -> Result<Vec<SweepPoint>, TableError> {
     let grids = read_grids(path, options)?;
+    let factor = kind.factor(poisson_ratio);
     let read = || -> Result<Vec<SweepPoint>, Located> {
-        let (records, ..) = records(&grids, Wanted::Sweeps, options)?;
+        let (records, layout, ..) = records(&grids, Wanted::Sweeps, options)?;
+        refuse_other_modulus(&layout, kind)?;
         let mut ends: Option<[f64; 2]> = None;
         let mut points = Vec::new();
         for record in &records {
@@ -58,6 +71,31 @@ pub fn read_master_curve(
         Ok(points)
     };
     read().map_err(|located| problem(path, located))
+}
+
+/// A header with the symbol of the other modulus is off by a factor of three.
+fn refuse_other_modulus(layout: &Layout, kind: ModulusKind) -> Result<(), Located> {
+    let other = match kind {
+        ModulusKind::Youngs => 'G',
+        ModulusKind::Shear => 'E',
+    };
+    let Some(column) = layout.columns.iter().find(|column| column.symbol == Some(other)) else {
+        return Ok(());
+    };
+    let (named, own, right) = match kind {
+        ModulusKind::Youngs => {
+            ("a shear modulus", "youngs", "\"shear\", E = 2 (1 + nu) G with nu the poisson_ratio")
+        }
+        ModulusKind::Shear => ("Young's modulus", "shear", "\"youngs\""),
+    };
+    let name = &column.name;
+    Err((
+        None,
+        format!(
+            "the column `{name}` names {named}, and modulus_kind is \"{own}\": write modulus_kind = {right}; if the header is \
+             wrong, rename the column to one without a symbol, such as storage_mpa"
+        ),
+    ))
 }
 
 /// Reads strain sweeps: one for each temperature (rows within 0.5 K, at their mean), by ascending temperature. Strains become
@@ -180,14 +218,23 @@ mod tests {
     fn a_master_curve_is_read_as_it_is() {
         let text = "frequency_hz,storage_mpa,loss_mpa\n10,5,1\n1,4,0.5\n10,6,1.2\n";
         let (_folder, path) = file(text);
-        let points = read_master_curve(&path, &TableOptions::default(), 3.0).unwrap();
+        let read = |path: &Path, kind| read_master_curve(path, &TableOptions::default(), kind, 0.5);
+        let points = read(&path, ModulusKind::Shear).unwrap();
         assert_eq!(points.len(), 3);
         assert_eq!(points[1].storage_modulus, 12e6);
         assert_eq!(points[2].angular_frequency, 10.0 * TAU);
         let sweeps = "frequency_hz,storage_mpa,loss_mpa,temperature_c\n1,5,1,20\n1,4,0.5,30\n";
         let (_folder, path) = file(sweeps);
-        let error = read_master_curve(&path, &TableOptions::default(), 1.0).unwrap_err();
+        let error = read(&path, ModulusKind::Youngs).unwrap_err();
         assert!(error.to_string().contains("line 3: the temperature 30"), "{error}");
+        let (_folder, path) = file("f/Hz,G'/MPa,G''/MPa\n1,5,1\n10,6,1.2\n");
+        assert_eq!(read(&path, ModulusKind::Shear).unwrap()[0].storage_modulus, 15e6);
+        let error = read(&path, ModulusKind::Youngs).unwrap_err().to_string();
+        assert!(error.contains("`G'/MPa` names a shear modulus"), "{error}");
+        assert!(error.contains("modulus_kind = \"shear\""), "{error}");
+        let (_folder, path) = file("f/Hz,E'/MPa,E''/MPa\n1,5,1\n10,6,1.2\n");
+        assert!(read(&path, ModulusKind::Youngs).is_ok());
+        assert!(read(&path, ModulusKind::Shear).is_err());
     }
 
     #[test]
