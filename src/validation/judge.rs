@@ -87,8 +87,28 @@ pub struct JudgedPoint {
     pub contact_area_fraction: f64,
     /// Ends of the 95 % band; absent if an error of the computation is unknown.
     pub band_95: Option<[f64; 2]>,
+    /// What the band is made of.
+    pub band_parts: BandParts,
     /// Whether the measurement is inside the band; absent without a band.
     pub inside: Option<bool>,
+}
+
+/// Half widths that make the 95 % band of a point: the band reaches `sqrt(fit² + (hysteresis + area)²)` to each side.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BandParts {
+    /// The fitted constants and the scatter of the measurements about the law; 0 where nothing is fitted.
+    pub fit: f64,
+    /// Error of the computed hysteresis, by the surfaces and by the grid; absent if it is unknown.
+    pub hysteresis: Option<f64>,
+    /// Error of the contact area, times its friction; 0 without adhesion, absent if it is unknown.
+    pub area: Option<f64>,
+}
+
+impl BandParts {
+    /// The half width of the band; `None` if a part is unknown.
+    fn half_width(&self) -> Option<f64> {
+        Some(self.fit.hypot(self.hysteresis? + self.area?))
+    }
 }
 
 /// One prediction in one case, over all sets.
@@ -351,11 +371,9 @@ impl Shear<'_> {
         };
         let by_area = value.relative_area_error.map(|error| error * adhesive);
         let of_shear = if adhesive == 0.0 { Some(0.0) } else { by_area };
-        let computed = value.hysteretic_error.zip(of_shear).map(|(a, b)| a + b);
-        let band_95 = computed.map(|error| {
-            let half = half_width_95.hypot(error);
-            [friction - half, friction + half]
-        });
+        let band_parts =
+            BandParts { fit: half_width_95, hysteresis: value.hysteretic_error, area: of_shear };
+        let band_95 = band_parts.half_width().map(|half| [friction - half, friction + half]);
         Ok(JudgedPoint {
             set: set.into(),
             speed_mm_s: at.speed.m_to_mm(),
@@ -368,6 +386,7 @@ impl Shear<'_> {
             adhesive,
             contact_area_fraction: at.contact_area_fraction,
             band_95,
+            band_parts,
             inside: band_95.map(|[low, high]| (low..=high).contains(&at.friction)),
         })
     }

@@ -25,5 +25,5 @@ mod judge;
 mod set;
 mod text;
 
-pub use judge::{Case, Constant, FittedLaw, Judged, JudgedPoint, Validated, judge};
+pub use judge::{BandParts, Case, Constant, FittedLaw, Judged, JudgedPoint, Validated, judge};
 pub use set::{Label, Prediction, Set, ValidationError};

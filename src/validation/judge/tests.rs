@@ -59,7 +59,16 @@ fn bands_hold_the_errors_of_the_computation_and_of_the_fit() {
     let exact = &own.points[8];
     let [low, high] = exact.band_95.unwrap();
     let computed = 0.01 + 0.02 * exact.adhesive;
+    assert_eq!(exact.band_parts.hysteresis, Some(0.01));
+    assert_eq!(exact.band_parts.area, Some(0.02 * exact.adhesive));
+    assert_eq!((alone.points[0].band_parts.fit, alone.points[0].band_parts.area), (0.0, Some(0.0)));
     approx::assert_relative_eq!(high - low, 2.0 * computed, max_relative = 1e-6);
+    let scattered = &of(&judged, Case::Joint).points[0];
+    let [low, high] = scattered.band_95.unwrap();
+    let parts = scattered.band_parts;
+    let half = parts.fit.hypot(parts.hysteresis.unwrap() + parts.area.unwrap());
+    assert!(parts.fit > 0.01, "{parts:?}");
+    approx::assert_relative_eq!(high - low, 2.0 * half, max_relative = 1e-12);
     let other = of(&judged, Case::Other);
     assert_eq!(other.laws[0].fitted_to, ["b"]);
     assert!((other.rms_of_sets[0] - 0.05).abs() < 1e-9, "{:?}", other.rms_of_sets);
