@@ -97,6 +97,9 @@ impl Validate {
         for ((path, out), read) in self.sets.iter().zip(&outs).zip(&recipes) {
             sets.push(self.set(path, out, read, quiet)?);
         }
+        for warning in sets.iter().flat_map(|set| &set.warnings) {
+            note(quiet, format_args!("warning: {warning}"));
+        }
         let validated = judge(&sets)?;
         // The table says it itself.
         for reason in validated.left_out.iter().filter(|_| self.json) {

@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 /// Friction coefficients that a measurement may have.
 const FRICTIONS: std::ops::RangeInclusive<f64> = 0.0..=20.0;
 
+/// Largest mean pressure in MPa at which friction of rubber is measured; a theory takes any.
+pub(crate) const LARGEST_MPA: f64 = 100.0;
+
 /// One measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPoint {
@@ -269,6 +272,11 @@ fn point(
     if let Some(pressure) = point.pressure_mpa.filter(|pressure| *pressure <= 0.0) {
         return Err(format!("the pressure {pressure} MPa is not positive"));
     }
+    if let Some(pressure) = point.pressure_mpa.filter(|pressure| *pressure > LARGEST_MPA) {
+        return Err(format!(
+            "the pressure {pressure} MPa is above {LARGEST_MPA} MPa; is it in Pa or kPa? Give MPa"
+        ));
+    }
     if !FRICTIONS.contains(&point.friction) {
         return Err(format!(
             "the friction coefficient {} is not between {} and {}: give force over load, not percent; are columns swapped?",
@@ -351,6 +359,9 @@ mod tests {
             error("speed_mm_s,friction,p_MPa\n1,1,3\n").1.contains("`p_MPa` is not understood")
         );
         assert!(error("speed_mm_s,friction,temperature_c\n1,1,300\n").1.contains("is it in K"));
+        // 0.3 MPa typed in Pa: theory would take it.
+        let pascal = error("speed_mm_s,friction,pressure_mpa\n1,1,300000\n").1;
+        assert!(pascal.contains("300000 MPa") && pascal.contains("is it in Pa"), "{pascal}");
         assert!(error("speed_mm_s,friction,temperature_k\n1,1,300\n").1.contains("temperature_k"));
         assert!(error("speed_mm_s,friction\n1\n").1.contains("1 cells"));
         assert!(error("speed_mm_s,friction\n-1,2\n").1.contains("not positive"));

@@ -13,6 +13,7 @@ mod run;
 mod spectrum;
 
 pub use beside::{Beside, BesideError, TemperatureError, Temperatures, beside};
+pub(crate) use file::LARGEST_MPA;
 pub use file::{MeasuredFile, MeasuredFileError, MeasuredPoint, read_measured};
 pub use run::{Available, Choice, Computed, ComputedAt, ComputedError};
 pub use spectrum::{

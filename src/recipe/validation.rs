@@ -2,7 +2,7 @@
 
 use crate::files::name;
 use crate::interface::Fixed;
-use crate::measurement::{Conventions, Sides, density_unit, wavenumber_unit};
+use crate::measurement::{Conventions, LARGEST_MPA, Sides, density_unit, wavenumber_unit};
 use crate::requirement::{InvalidRecipe, require};
 use crate::rubber::HOTTEST_C;
 use crate::theory::Diffusion;
@@ -122,14 +122,17 @@ impl Validation {
             energy,
             "from 0 to 10 eV (1 eV is 96.5 kJ/mol)",
         )?;
-        let celsius = self.temperature_c.unwrap_or(20.0);
-        let plausible = (-100.0..=HOTTEST_C).contains(&celsius);
-        require(
-            plausible,
-            "validation.temperature_c",
-            celsius,
-            "between -100 and 150 °C; is it in K?",
-        )?;
+        let pressure = self.pressure_mpa.unwrap_or(1.0);
+        let possible = pressure <= LARGEST_MPA;
+        let range = "at most 100 MPa; is it in Pa or kPa?";
+        require(possible, "validation.pressure_mpa", pressure, range)?;
+        let temperatures = [
+            ("validation.temperature_c", self.temperature_c),
+        ];
+        for (key, celsius) in temperatures.into_iter().filter_map(|(key, c)| Some((key, c?))) {
+            let plausible = (-100.0..=HOTTEST_C).contains(&celsius);
+            require(plausible, key, celsius, "between -100 and 150 °C; is it in K?")?;
+        }
         if pressures_mpa.is_empty() {
             let advice = "the mean pressure of the measurement; contacts at given areas have no speed in common with it";
             return Err(InvalidRecipe::Missing { key: "bem.pressures_mpa", advice });

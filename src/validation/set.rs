@@ -8,9 +8,10 @@ use crate::measurement::{
     MeasuredFileError, TemperatureError, Temperatures, beside, read_measured, read_spectrum,
 };
 use crate::recipe::{Recipe, Spectrum, Validation};
-use crate::rubber::{RubberFileError, read_rubber_at};
+use crate::rubber::{FrequencyRange, RubberFileError, read_rubber_at};
 use crate::stages::bem::Bem;
 use crate::stages::feedback::Effect;
+use crate::surface::spectrum::IsotropicSpectrum;
 use crate::theory::{IsotropicPersson, PerssonError, PerssonOptions};
 use crate::units::Units;
 use serde::Serialize;
@@ -63,6 +64,8 @@ pub struct Set {
     pub predictions: Vec<Prediction>,
     /// Predictions that could not be made, and why.
     pub left_out: Vec<String>,
+    /// What a reader should know of the predictions by the spectrum, which no stage has warned of.
+    pub warnings: Vec<String>,
 }
 
 /// Why a set cannot be judged.
@@ -181,13 +184,13 @@ impl Set {
         })?;
         let measurement = Measurement { validation, bem, file, temperatures };
         let pressures = measurement.pressures()?;
-        let mut left_out = Vec::new();
+        let (mut left_out, mut warnings) = (Vec::new(), Vec::new());
         let mut predictions = match run {
             Some(run) => measurement.of_run(run, &pressures, &mut left_out)?,
             None => Vec::new(),
         };
         if let Some(spectrum) = &validation.spectrum {
-            match measurement.of_spectrum(spectrum, &pressures) {
+            match measurement.of_spectrum(spectrum, &pressures, &mut warnings) {
                 Ok(prediction) => predictions.push(prediction),
                 // Moduli may end before the waves do; the contacts of the run are not worse for it.
                 Err(ValidationError::Theory { path, source })
@@ -217,6 +220,7 @@ impl Set {
             given: given.transpose()?,
             predictions,
             left_out,
+            warnings,
         })
     }
 }
@@ -345,15 +349,8 @@ impl Measurement<'_> {
         Ok((shortest.fold(f64::INFINITY, f64::min), values))
     }
 
-    /// The prediction of Persson's theory on a spectrum.
-    fn of_spectrum(
-        &self,
-        section: &Spectrum,
-        pressures: &[f64],
-    ) -> Result<Prediction, ValidationError> {
-        let conventions = section.conventions().map_err(ValidationError::Spectrum)?;
-        let (spectrum, _) =
-            read_spectrum(&section.file, conventions).map_err(ValidationError::Spectrum)?;
+    /// The lowest and highest wavenumber in rad/m that the theory takes of a spectrum.
+    fn band(section: &Spectrum, spectrum: &IsotropicSpectrum) -> Result<[f64; 2], ValidationError> {
         let [longest, mut shortest] = spectrum.band();
         if let Some(mm) = section.shortest_wavelength_mm {
             let ends = [shortest, longest].map(|wavenumber| (TAU / wavenumber).m_to_mm());
@@ -368,11 +365,29 @@ impl Measurement<'_> {
             }
             shortest = (TAU / mm.mm_to_m()).min(shortest);
         }
-        let options = PerssonOptions {
+        Ok([longest, shortest])
+    }
+
+    fn options(section: &Spectrum) -> PerssonOptions {
+        PerssonOptions {
             gamma: section.gamma,
             diffusion: section.diffusion.into(),
             ..PerssonOptions::default()
-        };
+        }
+    }
+
+    /// The prediction of Persson's theory on a spectrum. It takes any pressure and, of moduli that are held, any frequency.
+    fn of_spectrum(
+        &self,
+        section: &Spectrum,
+        pressures: &[f64],
+        warnings: &mut Vec<String>,
+    ) -> Result<Prediction, ValidationError> {
+        let conventions = section.conventions().map_err(ValidationError::Spectrum)?;
+        let (spectrum, _) =
+            read_spectrum(&section.file, conventions).map_err(ValidationError::Spectrum)?;
+        let [longest, shortest] = Self::band(section, &spectrum)?;
+        let options = Self::options(section);
         let named = |source: PerssonError| ValidationError::Theory {
             path: section.file.clone(),
             source: source.into(),
@@ -383,10 +398,17 @@ impl Measurement<'_> {
             let temperature_c = self.temperatures.measured_c[index];
             // A rubber at the temperature of its file has no other one, and none is stated anywhere.
             let shifted = self.temperatures.computed_c.map(|_| temperature_c);
-            let rubber = read_rubber_at(&self.bem.rubber, shifted)?.rubber;
-            let theory = IsotropicPersson::new(&spectrum, &rubber, [longest, shortest], options)
-                .map_err(named)?;
+            let data = read_rubber_at(&self.bem.rubber, shifted)?;
+            let theory =
+                IsotropicPersson::new(&spectrum, &data.rubber, [longest, shortest], options)
+                    .map_err(named)?;
             let speed = point.speed_mm_s.mm_to_m();
+            let waves = [longest, shortest].map(|wavenumber| TAU / wavenumber);
+            let line = self.file.lines[index];
+            let beyond = data.extrapolations(FrequencyRange::excited(waves, [speed]));
+            warnings.extend(beyond.into_iter().map(|warning| {
+                format!("{}, line {line}: {warning}", self.validation.measured.display())
+            }));
             let at = theory.at(speed, pressure.mpa_to_pa()).map_err(named)?;
             values.push(Beside {
                 measured: MeasuredFriction {

@@ -151,6 +151,21 @@ fn a_law_that_is_given_and_a_spectrum_alone_fit_nothing() {
     );
     let theory: Value = serde_json::from_str(&theory.result()).unwrap();
     assert_eq!(judged["points"][0]["hysteretic"], theory["rows"][0]["friction_coefficient"]);
+    let parts = &judged["points"][0]["band_parts"];
+    assert!(parts["hysteresis"].as_f64().unwrap() > 0.0 && parts["fit"].is_number(), "{parts}");
+    // The theory takes any pressure and, of moduli that are held, any frequency: both are told.
+    let pascal = alone.replace("width = 0.15", "width = 0.15\npressure_mpa = 300000");
+    campaign.write("spectrum.toml", &pascal);
+    let refused = outcome(&campaign, "validate spectrum.toml --out out").error(2);
+    assert!(refused.contains("validation.pressure_mpa = 300000") && refused.contains("in Pa"));
+    campaign.write("spectrum.toml", alone);
+    let held = "name = \"held\"\npoisson_ratio = 0.49\nmodulus_kind = \"youngs\"\nextrapolate = \"hold\"\n\
+        [[moduli]]\nfrequency_hz = 1.0\nstorage_mpa = 5.0\nloss_mpa = 0.5\n\
+        [[moduli]]\nfrequency_hz = 10.0\nstorage_mpa = 6.0\nloss_mpa = 0.7\n\
+        [[moduli]]\nfrequency_hz = 100.0\nstorage_mpa = 7.0\nloss_mpa = 0.9\n";
+    campaign.write("rubber.toml", held);
+    let warned = outcome(&campaign, "validate spectrum.toml --out out").stderr;
+    assert!(warned.contains("measured.csv, line 2") && warned.contains("held at"), "{warned}");
     let refused = outcome(&campaign, "run spectrum.toml --out out/none").error(2);
     assert!(refused.contains("asperity validate"), "{refused}");
 }

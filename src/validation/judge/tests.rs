@@ -31,6 +31,7 @@ fn set(title: &str, celsius: f64, noise: f64) -> Set {
         lines: (2..8).collect(),
         temperature_c: Some(celsius),
         several_temperatures: false,
+        warnings: Vec::new(),
         fixed: Fixed { width: Some(0.1), ..Fixed::default() },
         given: None,
         predictions: vec![Prediction {
