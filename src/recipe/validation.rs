@@ -32,7 +32,7 @@ pub struct Validation {
     /// Mean pressure in MPa of the measurement, if its file has none. Not set: that of `bem.pressures_mpa`, if it is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure_mpa: Option<f64>,
-    /// Speed in mm/s of the largest shear stress. Not set: fitted.
+    /// Speed in mm/s of the largest shear stress, at `reference_c`. Not set: fitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_mm_s: Option<f64>,
     /// Width of the bell of the shear stress over the decadic logarithm of the speed. Not set: fitted.
@@ -41,6 +41,10 @@ pub struct Validation {
     /// Activation energy in eV of the shear stress. Not set: fitted if the measurement has several temperatures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub activation_ev: Option<f64>,
+    /// Temperature in °C at which the speed of the shear stress holds, where measurements have several temperatures or
+    /// `activation_ev` is set. Not set: the lowest temperature of the sets that are judged together.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_c: Option<f64>,
     /// A power spectrum of the road, for Persson's theory beside the contacts of the recipe, or, where the recipe has neither
     /// scans nor waves, alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -128,6 +132,7 @@ impl Validation {
         require(possible, "validation.pressure_mpa", pressure, range)?;
         let temperatures = [
             ("validation.temperature_c", self.temperature_c),
+            ("validation.reference_c", self.reference_c),
         ];
         for (key, celsius) in temperatures.into_iter().filter_map(|(key, c)| Some((key, c?))) {
             let plausible = (-100.0..=HOTTEST_C).contains(&celsius);

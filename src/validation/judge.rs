@@ -54,7 +54,8 @@ pub struct Constant {
 pub struct FittedLaw {
     /// Titles of the sets that it was fitted to.
     pub fitted_to: Vec<String>,
-    /// Temperature in °C at which `speed_mm_s` holds, the lowest of the sets; none for a law that does not shift.
+    /// Temperature in °C at which `speed_mm_s` holds: `validation.reference_c`, else the lowest of the sets; none for a law that
+    /// does not shift.
     pub reference_c: Option<f64>,
     /// Measurements less fitted constants.
     pub degrees_of_freedom: usize,
@@ -165,7 +166,7 @@ impl Validated {
 /// # Errors
 /// [`ValidationError::DifferentConstants`], [`ValidationError::SameTitle`].
 pub fn judge(sets: &[Set]) -> Result<Validated, ValidationError> {
-    let fixed = common_constants(sets)?;
+    let (fixed, reference_c) = common_constants(sets)?;
     for (k, set) in sets.iter().enumerate() {
         if sets[..k].iter().any(|other| other.title == set.title) {
             return Err(ValidationError::SameTitle { title: set.title.clone() });
@@ -182,7 +183,8 @@ pub fn judge(sets: &[Set]) -> Result<Validated, ValidationError> {
             left_out.push(format!("{}: not every set has it", first.label));
             continue;
         };
-        let judging = Judging { sets, predictions: &predictions, fixed, label: &first.label };
+        let judging =
+            Judging { sets, predictions: &predictions, fixed, reference_c, label: &first.label };
         for case in [Case::Hysteresis, Case::Given, Case::Own, Case::Joint, Case::Other] {
             match judging.case(case) {
                 Ok(judged) => results.extend(judged),
@@ -201,20 +203,22 @@ impl std::fmt::Display for Label {
     }
 }
 
-/// The constants that no set has fitted; all must agree.
-fn common_constants(sets: &[Set]) -> Result<Fixed, ValidationError> {
+/// The constants that no set has fitted and the temperature in °C of their speed, if it is stated; all must agree.
+fn common_constants(sets: &[Set]) -> Result<(Fixed, Option<f64>), ValidationError> {
     let fixed = sets.first().map(|set| set.fixed).unwrap_or_default();
+    let reference_c = sets.first().and_then(|set| set.reference_c);
     for set in sets {
         let keys = [
             ("speed_mm_s", set.fixed.peak_speed == fixed.peak_speed),
             ("width", set.fixed.width == fixed.width),
             ("activation_ev", set.fixed.energy_ev == fixed.energy_ev),
+            ("reference_c", set.reference_c == reference_c),
         ];
         if let Some((key, _)) = keys.into_iter().find(|(_, same)| !same) {
             return Err(ValidationError::DifferentConstants { key });
         }
     }
-    Ok(fixed)
+    Ok((fixed, reference_c))
 }
 
 /// Relative difference of shortest wavelengths that counts as none, as in the tables of total friction.
@@ -240,6 +244,7 @@ struct Judging<'a> {
     sets: &'a [Set],
     predictions: &'a [Prediction],
     fixed: Fixed,
+    reference_c: Option<f64>,
     label: &'a Label,
 }
 
@@ -316,7 +321,7 @@ impl Judging<'_> {
         let one = measured.iter().all(|m| Some(m.temperature_c) == first);
         let shifts = !one || self.fixed.energy_ev.is_some();
         let known = self.sets.iter().filter_map(|set| set.temperature_c).reduce(f64::min);
-        let reference_c = known.or(first);
+        let reference_c = self.reference_c.or(known).or(first);
         let fit = fit_shear(&measured, reference_c.filter(|_| shifts), self.fixed)?;
         Ok((of.to_vec(), fit))
     }

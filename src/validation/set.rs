@@ -58,6 +58,8 @@ pub struct Set {
     pub several_temperatures: bool,
     /// Constants of the shear stress that are not fitted.
     pub fixed: Fixed,
+    /// Temperature in °C at which the speed of the shear stress holds, if the recipe states it.
+    pub reference_c: Option<f64>,
     /// The law of the section `[adhesion]` with its shortest wavelength in mm.
     pub given: Option<(ShearLaw, f64)>,
     /// The predictions.
@@ -217,6 +219,7 @@ impl Set {
             temperature_c: temperatures.computed_c,
             several_temperatures: !temperatures.is_one(),
             fixed: validation.fixed(),
+            reference_c: validation.reference_c,
             given: given.transpose()?,
             predictions,
             left_out,

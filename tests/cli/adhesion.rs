@@ -52,6 +52,19 @@ fn the_law_behind_measured_friction_is_found_and_gives_it_back() {
         &outcome(&campaign, "adhesion fit measured.csv --run out --json").result(),
     )
     .unwrap();
+    assert!(fit["reference_c"].is_null());
+    // As a German spreadsheet writes it.
+    let german = campaign.read("measured.csv").replace(',', ";").replace('.', ",");
+    campaign.write("german.csv", &german);
+    let again = outcome(&campaign, "adhesion fit german.csv --run out --json").result();
+    let again: serde_json::Value = serde_json::from_str(&again).unwrap();
+    assert_eq!(again["constants"], fit["constants"]);
+    let fixed = outcome(
+        &campaign,
+        "adhesion fit measured.csv --run out --speed 2 --width 0.15 --activation-ev 0.9 --reference-c 30",
+    );
+    let fixed = fixed.result();
+    assert!(fixed.contains("30  °C, at which speed_mm_s holds"), "{fixed}");
     for (constant, expected) in fit["constants"].as_array().unwrap().iter().zip([5.0, 2.0, 0.15]) {
         approx::assert_relative_eq!(
             constant["value"].as_f64().unwrap(),

@@ -60,7 +60,7 @@ pub(super) struct Fit {
     /// Temperature in °C of measurements whose file has none [default: that of the run].
     #[arg(long, value_name = "C", value_parser = values::finite, allow_negative_numbers = true)]
     temperature_c: Option<f64>,
-    /// Fix the speed in mm/s of the largest shear stress.
+    /// Fix the speed in mm/s of the largest shear stress; it holds at --reference-c where the law shifts with temperature.
     #[arg(long, value_name = "MM_S", value_parser = values::positive, allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Fix the width.
@@ -69,7 +69,8 @@ pub(super) struct Fit {
     /// Fix the activation energy in eV.
     #[arg(long, value_name = "EV", value_parser = values::finite, allow_negative_numbers = true)]
     activation_ev: Option<f64>,
-    /// Temperature in °C of the law [default: that of the run, if measurements differ in temperature].
+    /// Temperature in °C at which the speed of the law holds, given by --speed or fitted [default: that of the run, if
+    /// measurements differ in temperature].
     #[arg(long, value_name = "C", value_parser = values::finite, allow_negative_numbers = true)]
     reference_c: Option<f64>,
     /// Write the section [adhesion] of a recipe to this file.

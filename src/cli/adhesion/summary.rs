@@ -15,6 +15,8 @@ pub(super) struct Summary {
     surfaces: String,
     pressure_mpa: f64,
     shortest_wavelength_mm: f64,
+    /// Temperature in °C at which `speed_mm_s` holds; none for a law that does not shift.
+    reference_c: Option<f64>,
     constants: Vec<Constant>,
     rms: f64,
     degrees_of_freedom: usize,
@@ -70,6 +72,7 @@ impl Summary {
             surfaces: computed.kind.to_string(),
             pressure_mpa: computed.pressure_mpa,
             shortest_wavelength_mm: computed.shortest_wavelength_mm,
+            reference_c: fit.law.shift.map(|shift| shift.reference_c),
             constants,
             rms: fit.rms,
             degrees_of_freedom: fit.degrees_of_freedom,
@@ -92,6 +95,13 @@ impl Summary {
                 |(low, high)| format!("95 %: {} to {}", significant(low), significant(high)),
             );
             let _ = writeln!(text, "{key:<14} {:>12}  {interval}", significant(*value));
+        }
+        if let Some(celsius) = self.reference_c {
+            let _ = writeln!(
+                text,
+                "{:<14} {celsius:>12}  °C, at which speed_mm_s holds",
+                "reference_c"
+            );
         }
         let _ = writeln!(
             text,

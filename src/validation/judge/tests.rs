@@ -31,6 +31,7 @@ fn set(title: &str, celsius: f64, noise: f64) -> Set {
         lines: (2..8).collect(),
         temperature_c: Some(celsius),
         several_temperatures: false,
+        reference_c: None,
         warnings: Vec::new(),
         fixed: Fixed { width: Some(0.1), ..Fixed::default() },
         given: None,
@@ -83,6 +84,13 @@ fn a_law_of_one_temperature_predicts_no_other_one() {
     let reason = judged.left_out.iter().find(|reason| reason.contains("other")).unwrap();
     assert!(reason.contains("20 °C") && reason.contains("40 °C"), "{reason}");
     assert_eq!(of(&judged, Case::Joint).laws[0].reference_c, Some(20.0));
+    let stated = [("a", 20.0), ("b", 40.0)].map(|(title, celsius)| {
+        let mut set = set(title, celsius, 0.0);
+        set.reference_c = Some(40.0);
+        set
+    });
+    let hot = judge(&stated).unwrap();
+    assert_eq!(of(&hot, Case::Joint).laws[0].reference_c, Some(40.0));
     let turned = judge(&[set("b", 40.0, 0.0), set("a", 20.0, 0.0)]).unwrap();
     assert_eq!(of(&turned, Case::Joint).laws[0].reference_c, Some(20.0));
 }
@@ -93,6 +101,10 @@ fn sets_that_cannot_be_told_apart_or_fix_other_constants_are_refused() {
     assert!(same.to_string().contains("title `a`"), "{same}");
     let mut other = set("b", 20.0, 0.0);
     other.fixed.width = Some(0.2);
+    let mut warm = set("b", 20.0, 0.0);
+    warm.reference_c = Some(30.0);
+    let reference = judge(&[set("a", 20.0, 0.0), warm]).unwrap_err();
+    assert!(reference.to_string().contains("different reference_c"), "{reference}");
     let different = judge(&[set("a", 20.0, 0.0), other]).unwrap_err();
     assert!(different.to_string().contains("different width"), "{different}");
 }
