@@ -29,8 +29,8 @@ impl Report<'_> {
         let temperature = first.temperature_c.map(|celsius| format!(" at {celsius} °C"));
         Ok(html! {
             (self.doubt(&[stages::tables::STAGE]))
-            p { "Hysteresis and the shear of the contact area, whose stress" (temperature.unwrap_or_default())
-                " was fitted with waves down to " (number(first.fitted_wavelength_mm, 4)) " mm. The errors hold those of \
+            p { "Hysteresis and the shear of the contact area" (temperature.unwrap_or_default()) ". The law of the shear \
+                stress is one for waves down to " (number(first.fitted_wavelength_mm, 4)) " mm. The errors hold those of \
                 hysteresis and contact area, not that of the stress."
                 @if self.has_effects()? { " Heat and softening of the contact are in the next section." } }
             (self.figure("total")?)
