@@ -16,6 +16,7 @@ mod names;
 mod odd_files;
 mod oversights;
 mod report;
+mod report_effects;
 mod road;
 mod rubber;
 mod rubber_files;

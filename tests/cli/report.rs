@@ -189,11 +189,20 @@ fn every_figure_is_drawn_as_svg_and_png() {
     let campaign = finished();
     let list = outcome(&campaign, "plot --list").result();
     let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(names.len(), 19);
+    assert_eq!(names.len(), 21);
     for name in names {
-        // No measured profiles, one speed, no published table, no microscale, no maps, no study.
-        let absent =
-            ["methods", "speed", "comparison", "correction", "pressure-map", "direction", "study"];
+        // No measured profiles, one speed, no adhesion, no heat, no published table, no microscale, no maps, no study.
+        let absent = [
+            "methods",
+            "speed",
+            "total",
+            "effects",
+            "comparison",
+            "correction",
+            "pressure-map",
+            "direction",
+            "study",
+        ];
         if absent.contains(&name) {
             let message = outcome(&campaign, &format!("plot {name} out")).error(2);
             assert!(message.contains("it needs"), "{message}");

@@ -141,7 +141,21 @@ fn heat_is_given_beside_the_prediction_without() {
     let csv = fs::read_to_string(folder.path().join("hot.csv")).unwrap();
     let columns = |line: &str| line.split(',').count();
     assert!(csv.lines().all(|line| columns(line) == 22), "{csv}");
-    assert!(theory(folder.path(), &flash).result().contains("rise / K"));
+    // Each row has the cold values beside the hot ones.
+    let text = theory(folder.path(), &format!("{flash} --magnifications-per-decade 1")).result();
+    let (_, table) = text.split_once("rise / K\n").unwrap();
+    for (k, line) in table.lines().enumerate() {
+        let cells: Vec<f64> = line.split_whitespace().map(|cell| cell.parse().unwrap()).collect();
+        for (at, column) in
+            [(0, "speed_mm_s"), (2, "contact_area_fraction"), (4, "friction_coefficient")]
+        {
+            assert_relative_eq!(cells[at], number(&rows[k], column), max_relative = 1e-5);
+        }
+        for (at, column) in [(3, "contact_area_fraction"), (5, "friction_coefficient")] {
+            assert_relative_eq!(cells[at], number(&hot[k], column), max_relative = 1e-5);
+        }
+    }
+    assert_eq!(table.lines().count(), 2);
     // Table 2.1 has no law of temperature.
     let cold = format!("--spectrum road.txt {UNITS} {LOAD} --flash --contact-diameter-mm 2");
     assert!(theory(folder.path(), &cold).error(2).contains("no [temperature] section"));

@@ -24,8 +24,11 @@ use asperity::report::{
 };
 use asperity::stages::Stage;
 use asperity::stages::ingest::{FAULTS, MAP_WINDOWS, REPORT, WINDOWS, cleaning_markdown};
-use asperity::stages::realise::Method;
-use asperity::stages::tables::{COMPARISON, CORRECTIONS, FRICTION, FrictionRow, Model, NOTE_KEY};
+use asperity::stages::realise::{Method, SurfaceKind};
+use asperity::stages::tables::{
+    COMPARISON, CORRECTIONS, EFFECTS, EffectRow, FRICTION, FrictionRow, Model, NOTE_KEY, TOTAL,
+    TotalRow,
+};
 use asperity::sweep::STAGE;
 
 const EXAMPLES: &str = "\
@@ -59,7 +62,8 @@ pub(super) struct Export {
     /// Run folder.
     run: PathBuf,
     /// Format: csv and markdown and latex in the layout of the published tables, parquet as one
-    /// long table, xlsx as a workbook with a sheet for each, svg as the figure of `asperity plot friction`.
+    /// long table, xlsx as a workbook with a sheet for each and for total friction and friction with heat and softening,
+    /// svg as the figure of `asperity plot friction`.
     #[arg(long, value_enum)]
     format: Format,
     /// The computed tables beside the published ones that the recipe names, as a Markdown document.
@@ -163,8 +167,7 @@ impl Export {
                 let Some(path) = &self.to else {
                     return Err(CliError::input("a workbook is binary: give a file with --to"));
                 };
-                let bytes = workbook(&tables, &about).map_err(CliError::failure)?;
-                write_file(path, self.force, |out| out.write_all(&bytes))
+                self.workbook(&view, &tables, &about, path)
             }
             Format::Svg => self.text(&friction_figure(&rows, &about).svg()?),
             Format::Parquet => {
@@ -174,6 +177,25 @@ impl Export {
                 self.bytes(path, long_table(&rows)?.parquet())
             }
         }
+    }
+
+    /// The friction tables, with total friction and friction with heat and softening where the run has them.
+    fn workbook(
+        &self,
+        view: &RunView,
+        tables: &[FrictionTable],
+        about: &About,
+        path: &Path,
+    ) -> Result<(), CliError> {
+        let totals = if view.has(TOTAL)? { view.rows(TOTAL)? } else { Vec::new() };
+        let effects = if view.has(EFFECTS)? { view.rows(EFFECTS)? } else { Vec::new() };
+        let of_total = |row: &TotalRow| self.is_chosen(row.model, row.kind, row.speed_mm_s);
+        // Heat and softening are solved on the half-space.
+        let of_effect = |row: &EffectRow| self.is_chosen(Model::Bem, row.kind, row.speed_mm_s);
+        let totals: Vec<_> = totals.into_iter().filter(of_total).collect();
+        let effects: Vec<_> = effects.into_iter().filter(of_effect).collect();
+        let bytes = workbook(tables, &totals, &effects, about).map_err(CliError::failure)?;
+        write_file(path, self.force, |out| out.write_all(&bytes))
     }
 
     /// One row for each value of each realisation.
@@ -192,12 +214,16 @@ impl Export {
         }
     }
 
-    /// Whether a row is of the model, number of waves and speed that were asked for.
     fn chosen(&self, row: &FrictionRow) -> bool {
-        self.model.is_none_or(|model| model == row.model)
-            && self.method.is_none_or(|method| method == row.kind.method)
-            && self.waves.is_none_or(|waves| row.kind.is_sines(waves))
-            && self.speed.is_none_or(|speed| speed == row.speed_mm_s)
+        self.is_chosen(row.model, row.kind, row.speed_mm_s)
+    }
+
+    /// Whether friction is of the model, surfaces and speed that were asked for.
+    fn is_chosen(&self, model: Model, kind: SurfaceKind, speed_mm_s: f64) -> bool {
+        self.model.is_none_or(|chosen| chosen == model)
+            && self.method.is_none_or(|method| method == kind.method)
+            && self.waves.is_none_or(|waves| kind.is_sines(waves))
+            && self.speed.is_none_or(|speed| speed == speed_mm_s)
     }
 
     /// Warns if a result is not what its recipe asks for any more. Missing tables are reported elsewhere.

@@ -102,12 +102,18 @@ pub(super) fn speeds(text: &str) -> Result<Speeds, String> {
                 return Err(format!("{from} is not below {to}: a range is FROM:TO:PER_DECADE"));
             }
             let steps = (per_decade * (to / from).log10()).round().max(1.0);
-            let at = |k: usize| from * (to / from).powf(k as f64 / steps);
+            // A decade above 0.001 is 0.01, not that and a round-off.
+            let at = |k: usize| rounded(from * (to / from).powf(k as f64 / steps));
             let inside = (1..steps as usize).map(at);
             Ok(Speeds([from].into_iter().chain(inside).chain([to]).collect()))
         }
         _ => Err(format!("`{text}` is neither a speed nor FROM:TO:PER_DECADE")),
     }
+}
+
+/// The value to 13 significant digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -268,7 +274,10 @@ impl Summary {
         let cold = format!("{}\n{}", aligned(&lines), table(&self.rows));
         match self.flash[..] {
             [] => cold,
-            _ => format!("{cold}\nwith Persson's flash temperature\n{}", flash_table(&self.flash)),
+            _ => format!(
+                "{cold}\ncold, and hot by Persson's flash temperature\n{}",
+                flash_table(&self.rows, &self.flash)
+            ),
         }
     }
 }
@@ -282,7 +291,9 @@ mod tests {
         assert_eq!(speeds("10").unwrap(), Speeds(vec![10.0]));
         let Speeds(range) = speeds("0.1:100:2").unwrap();
         assert_eq!((range.len(), range[0], range[6]), (7, 0.1, 100.0));
-        approx::assert_relative_eq!(range[2], 1.0, max_relative = 1e-12);
+        approx::assert_relative_eq!(range[1], 0.1 * 10_f64.sqrt(), max_relative = 1e-12);
+        let decades = Speeds([0.001, 0.01, 0.1, 1.0, 10.0, 100.0].to_vec());
+        assert_eq!(speeds("0.001:100:1").unwrap(), decades);
         for text in ["", "0", "-1", "1:2", "2:1:3", "1:2:0", "1:2:3:4", "a:b:c", "nan"] {
             assert!(speeds(text).is_err(), "{text}");
         }

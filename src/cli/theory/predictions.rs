@@ -123,20 +123,24 @@ pub(super) fn table(rows: &[Row]) -> String {
     columns(header, rows.iter().map(cells))
 }
 
-/// The rows of the heated rubber.
-pub(super) fn flash_table(rows: &[FlashRow]) -> String {
-    let header = ["mm/s", "MPa", "Ac/A0", "friction", "gap / mm", "rise / K"];
-    let cells = |row: &FlashRow| {
+/// The heated rubber beside the cold one, with all waves.
+pub(super) fn flash_table(cold: &[Row], hot: &[FlashRow]) -> String {
+    let header =
+        ["mm/s", "MPa", "Ac/A0 cold", "hot", "friction cold", "hot", "gap hot / mm", "rise / K"];
+    let all_waves = cold.chunk_by(|a, b| b.same_contact(a)).filter_map(<[Row]>::last);
+    let cells = |(cold, hot): (&Row, &FlashRow)| {
         [
-            row.speed_mm_s.to_string(),
-            row.pressure_mpa.to_string(),
-            significant(row.contact_area_fraction),
-            significant(row.friction_coefficient),
-            significant(row.mean_gap_mm),
-            significant(row.rise_k),
+            hot.speed_mm_s.to_string(),
+            hot.pressure_mpa.to_string(),
+            significant(cold.contact_area_fraction),
+            significant(hot.contact_area_fraction),
+            significant(cold.friction_coefficient),
+            significant(hot.friction_coefficient),
+            significant(hot.mean_gap_mm),
+            significant(hot.rise_k),
         ]
     };
-    columns(header, rows.iter().map(cells))
+    columns(header, all_waves.zip(hot).map(cells))
 }
 
 pub(super) fn columns<const N: usize>(

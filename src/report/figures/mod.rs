@@ -3,10 +3,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `accuracy` | what accuracy costs, and what the error is made of |
+//! | `along` | friction over speed, or over contact area or pressure, in panels and curves |
 //! | `budget` | what the error of friction is made of |
 //! | `contact` | contact area over pressure |
 //! | `correction` | the correction of the half-space by the microscale |
 //! | `direction` | friction of areal surfaces over the direction of sliding |
+//! | `effects` | friction with the heat and the strain of the contact, and without |
 //! | `fields` | pressure and deformation along a surface |
 //! | `friction` | friction over contact area |
 //! | `maps` | contact pressure and contact patches of areal surfaces |
@@ -18,13 +20,16 @@
 //! | `scans` | what the scans look like |
 //! | `speed` | friction over speed |
 //! | `study` | friction and contact area of the study of one sine wave |
+//! | `total` | hysteresis, the shear of the contact area, and their sum |
 //! | `waves` | the superposed sines |
 
 mod accuracy;
+mod along;
 mod budget;
 mod contact;
 mod correction;
 mod direction;
+mod effects;
 mod fields;
 mod friction;
 mod maps;
@@ -36,6 +41,7 @@ mod rubber_fit;
 mod scans;
 mod speed;
 mod study;
+mod total;
 mod waves;
 
 pub use friction::friction_figure;
@@ -71,7 +77,7 @@ pub struct Kind {
 }
 
 /// All kinds of figures, in the order of the data.
-pub static ALL: [Kind; 19] = [
+pub static ALL: [Kind; 21] = [
     Kind {
         name: "scans",
         shows: "heights of some windows over their length",
@@ -127,6 +133,20 @@ pub static ALL: [Kind; 19] = [
         requires: "two or more speeds, key bem.speeds_mm_s",
         stages: &[stages::tables::STAGE],
         make: speed::speed,
+    },
+    Kind {
+        name: "total",
+        shows: "hysteretic, adhesive and total friction over speed, or over contact area or pressure",
+        requires: "the shear stress of the contact area, section [adhesion]",
+        stages: &[stages::tables::STAGE],
+        make: total::total,
+    },
+    Kind {
+        name: "effects",
+        shows: "friction cold, softened by strain, hot, and both, over speed or pressure",
+        requires: "heat or softening of the contact, section [feedback]",
+        stages: &[stages::feedback::STAGE, stages::tables::STAGE],
+        make: effects::effects,
     },
     Kind {
         name: "budget",

@@ -12,6 +12,8 @@ use crate::stages::bem::Given;
 use crate::stages::tables::{FRICTION, FrictionRow};
 use std::collections::BTreeSet;
 
+/// Name of the axis of speeds.
+pub(super) const SPEED: &str = "sliding speed v / (mm/s); 1 km/h is 278 mm/s";
 /// 1 km/h in mm/s.
 const KM_H: f64 = 1e6 / 3600.0;
 
@@ -72,7 +74,7 @@ pub fn speed_figure(rows: &[(String, &FrictionRow)], title: &str) -> Option<Figu
                 "" => condition,
                 title => format!("{condition}, {title}"),
             },
-            x: Axis::logarithmic("sliding speed v / (mm/s); 1 km/h is 278 mm/s"),
+            x: Axis::logarithmic(SPEED),
             y: Axis::from_zero(FRICTION_LABEL),
             series: series.collect(),
         }

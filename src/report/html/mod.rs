@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `areal` | surfaces that are rough in both directions: roughness, direction, contact patches |
 //! | `contact` | sections on the correction, the fields and the rubber |
+//! | `effects` | sections on total friction, and on the heat and softening of the contact |
 //! | `friction` | sections on friction, its tables and its error |
 //! | `page` | parts that all sections are made of |
 //! | `provenance` | where the results come from and how to compute them again |
@@ -13,6 +14,7 @@
 
 mod areal;
 mod contact;
+mod effects;
 mod friction;
 mod page;
 mod provenance;
@@ -70,6 +72,7 @@ pub fn document(run: &RunView, origin: &Origin) -> Result<String, ReportError> {
     let report = Report { run, origin };
     let sections = report.sections()?;
     let title = report.title();
+    let shown = if report.has_totals()? { "hysteretic and total" } else { "hysteretic" };
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -85,7 +88,7 @@ pub fn document(run: &RunView, origin: &Origin) -> Result<String, ReportError> {
             body {
                 header {
                     h1 { (title) }
-                    p { "Report of asperity " (TOOL_VERSION) ": hysteretic friction of rubber on a rough \
+                    p { "Report of asperity " (TOOL_VERSION) ": " (shown) " friction of rubber on a rough \
                         surface. Every number comes from the results in the run folder; ± and bands \
                         are 95 % confidence intervals unless said otherwise." }
                     (report.doubts())
@@ -127,6 +130,12 @@ impl Report<'_> {
             add("spectrum", "Power spectral density", self.spectrum()?);
             add("waves", "Waves, slopes and the model of each", self.waves()?);
             add("friction", "Friction over contact area", self.friction()?);
+            if self.has_totals()? {
+                add("total", "Total friction", self.total()?);
+            }
+            if self.has_effects()? {
+                add("effects", "Heat and softening", self.effects()?);
+            }
             add("correction", "Correction over pressure", self.correction()?);
             add("fields", "Pressure along profiles and deformed profiles", self.fields()?);
             if self.has_areal_surfaces()? {
