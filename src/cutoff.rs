@@ -206,7 +206,7 @@ fn cutoff_row(row: &FrictionRow, octave: u32) -> CutoffRow {
 fn longer(recipe: &Recipe, octave: u32, base_mm: Option<f64>) -> Option<Recipe> {
     let mut variant = recipe.clone();
     (variant.micro, variant.hybrid, variant.fem, variant.multilevel) = (None, None, None, None);
-    variant.feedback = None;
+    (variant.feedback, variant.methods) = (None, None);
     variant.tables.published.clear();
     variant.tables.published_corrections.clear();
     variant.tables.theories.clear();

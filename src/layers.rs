@@ -35,6 +35,7 @@ const MECHANICS: &[&str] = &[
     "interface",
     "multiscale",
     "fem",
+    "homogenisation",
     "theory",
     "water",
 ];

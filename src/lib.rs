@@ -32,6 +32,7 @@
 //! | [`interface`] | shear in the area of contact: its law, its fit, its effect on the contact |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
+//! | [`homogenisation`] | friction scale by scale: the older multiscale methods |
 //! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
 //! | [`water`] | sealed pools, squeeze-out of a film |
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
@@ -66,8 +67,8 @@
 //! are NaN and nothing else is.
 
 pub use asperity_core::{
-    contact, error_kind, fem, heat, interface, multiscale, numerics, reference, surface, theory,
-    water,
+    contact, error_kind, fem, heat, homogenisation, interface, multiscale, numerics, reference,
+    surface, theory, water,
 };
 pub use asperity_files as files;
 pub use asperity_scans as scans;

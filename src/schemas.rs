@@ -4,8 +4,8 @@
 use crate::artifact::{ArtifactError, Manifest, Row, arrays_schema, table_schema};
 use crate::recipe::Recipe;
 use crate::stages::{
-    approximate, areal, bem, characterise, feedback, fem, hybrid, ingest, micro, multilevel,
-    realise, sinusoid, tables,
+    approximate, areal, bem, characterise, feedback, fem, hybrid, ingest, methods, micro,
+    multilevel, realise, sinusoid, tables,
 };
 use crate::sweep::SweepFrictionRow;
 use schemars::schema_for;
@@ -58,6 +58,8 @@ pub fn documents() -> Result<Vec<(String, Value)>, ArtifactError> {
         table::<areal::ArealCurveRow>()?,
         table::<areal::ArealUnsolvedRow>()?,
         arrays(&areal::areal_fields_schema()),
+        table::<methods::MethodCurveRow>()?,
+        table::<methods::MethodFrictionRow>()?,
         table::<feedback::ContactRow>()?,
         table::<feedback::UnsolvedRow>()?,
         table::<micro::SampleRow>()?,

@@ -36,6 +36,7 @@ use crate::stages::areal;
 use crate::stages::bem::{self, CURVES, CurveRow, FIRST_REALISATIONS, SOLVES, SolveRow, Worth};
 use crate::stages::feedback::{self, Feedback};
 use crate::stages::ingest::{read_maps, read_windows};
+use crate::stages::methods::{self, Methods};
 use crate::stages::micro::Parting;
 use crate::stages::realise::SurfaceKind;
 use crate::stages::realise::{Surface, read_areal_surfaces, read_surfaces};
@@ -193,6 +194,10 @@ pub fn forecast(
         stages.push(StageForecast { stage: stages::multilevel::STAGE, seconds: Some(seconds) });
     }
     stages.push(StageForecast { stage: stages::tables::STAGE, seconds: Some(0.0) });
+    if let Some(section) = chain.methods {
+        let seconds = trial.methods(section, &chain) / threads as f64;
+        stages.push(StageForecast { stage: stages::methods::STAGE, seconds: Some(seconds) });
+    }
     let most = curves.iter().map(|curve| curve.grid_points[1]).max().unwrap_or(0);
     // Each thread keeps the contacts of a curve on all of its grids: twice the finest one.
     let points = 2.0 * most as f64 * threads as f64;
@@ -256,7 +261,7 @@ fn require_attainable(
 fn shortened(recipe: &Recipe) -> Recipe {
     let mut trial = recipe.clone();
     (trial.micro, trial.hybrid, trial.fem, trial.multilevel) = (None, None, None, None);
-    trial.feedback = None;
+    (trial.feedback, trial.methods) = (None, None);
     (trial.tables.published, trial.tables.theories) = (Vec::new(), Vec::new());
     let averaged = trial.bem.as_ref().is_some_and(|bem| bem.average_tolerance.is_some());
     if let Some(realise) = &mut trial.realise {
@@ -383,6 +388,16 @@ impl Trial {
             let speeds = chain.bem.speeds_mm_s.iter();
             let realisations = speeds.map(|v| self.realisations(surface.kind, *v, chain)).max();
             f64::from(realisations.unwrap_or(0)) * feedback::seconds(section, chain.bem, surface)
+        };
+        self.first_surfaces().map(of_kind).sum()
+    }
+
+    /// Expected seconds on one thread of the older multiscale methods.
+    fn methods(&self, section: &Methods, chain: &Chain) -> f64 {
+        let of_kind = |surface: &Surface| {
+            let speeds = chain.bem.speeds_mm_s.iter();
+            let curves = speeds.map(|v| f64::from(self.realisations(surface.kind, *v, chain)));
+            curves.sum::<f64>() * methods::seconds(section, chain, surface)
         };
         self.first_surfaces().map(of_kind).sum()
     }

@@ -5,9 +5,10 @@ use crate::artifact::{ArtifactError, Identity, RunView};
 use crate::recipe::Recipe;
 use crate::rubber::{FiniteStrainRubber, RubberData, RubberModel};
 use crate::stages::ingest::ScanFile;
+use crate::stages::methods::Methods;
 use crate::stages::{
-    Job, Planned, Request, Stage, StageError, bem, feedback, fem, ingest, micro, multilevel,
-    sinusoid, tables,
+    Job, Planned, Request, Stage, StageError, bem, feedback, fem, ingest, methods, micro,
+    multilevel, sinusoid, tables,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -133,6 +134,7 @@ fn request<'a>(
                 (chain.micro.is_some(), micro::STAGE),
                 (chain.fem.is_some(), fem::STAGE),
                 (chain.multilevel.is_some(), multilevel::STAGE),
+                (chain.methods.is_some_and(Methods::has_finite_deformation), methods::STAGE),
             ];
             if let Some((_, stage)) = finite.into_iter().find(|(asked, _)| *asked) {
                 check_finite_strain(&material.rubber, &chain.bem.rubber).map_err(of(stage))?;

@@ -29,6 +29,7 @@ use crate::stages::{
     fem::Fem,
     hybrid::Hybrid,
     ingest::Ingest,
+    methods::Methods,
     micro::Micro,
     multilevel::Multilevel,
     realise::{MOST_REALISATIONS, Realise},
@@ -92,6 +93,9 @@ pub struct Recipe {
     /// Averaged friction tables.
     #[serde(default)]
     pub tables: Tables,
+    /// The older multiscale methods beside the models of the tables.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub methods: Option<Methods>,
     /// Shear stress of the contact area; with it, the tables have the total friction beside the hysteresis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adhesion: Option<Adhesion>,
@@ -262,6 +266,7 @@ impl Recipe {
             ("fem", self.fem.is_some()),
             ("multilevel", self.multilevel.is_some()),
             ("tables", self.tables != Tables::default()),
+            ("methods", self.methods.is_some()),
             ("adhesion", self.adhesion.is_some()),
             ("validation", self.validation.is_some()),
             ("sweep", self.sweep.is_some()),
@@ -293,6 +298,7 @@ impl Recipe {
             fem: self.fem.as_ref(),
             multilevel: self.multilevel.as_ref(),
             tables: &self.tables,
+            methods: self.methods.as_ref(),
             adhesion: self.adhesion.as_ref(),
         })
     }
@@ -365,6 +371,7 @@ impl Chain<'_> {
         self.fem.map_or(Ok(()), Fem::check)?;
         self.multilevel.map_or(Ok(()), Multilevel::check)?;
         self.tables.check()?;
+        self.methods.map_or(Ok(()), |methods| methods.check(&self.realise.waves))?;
         self.adhesion.map_or(Ok(()), |adhesion| {
             adhesion.check(self.bem.temperature_c, &self.bem.speeds_mm_s)
         })?;

@@ -9,6 +9,7 @@ use super::feedback::Feedback;
 use super::fem::Fem;
 use super::hybrid::Hybrid;
 use super::ingest::{Ingest, ScanFile};
+use super::methods::Methods;
 use super::micro::Micro;
 use super::multilevel::Multilevel;
 use super::realise::Realise;
@@ -71,6 +72,8 @@ pub struct Chain<'a> {
     pub multilevel: Option<&'a Multilevel>,
     /// Section `[tables]`.
     pub tables: &'a Tables,
+    /// Section `[methods]`, if the older multiscale methods are to stand beside the models.
+    pub methods: Option<&'a Methods>,
     /// Section `[adhesion]`, if the contact area carries a shear stress.
     pub adhesion: Option<&'a Adhesion>,
 }

@@ -367,6 +367,14 @@ pub enum StageError {
         /// Why.
         source: Box<SolveError>,
     },
+    /// No curve of an older multiscale method.
+    #[error(
+        "[methods]: no method gives friction at any of the areas and pressures of [bem]: {reason}"
+    )]
+    NoMethods {
+        /// Why the first has none.
+        reason: String,
+    },
     /// A published table.
     #[error("published table {}: {source}; it needs the columns area_fraction and average", path.display())]
     Published {
@@ -430,6 +438,7 @@ impl HasKind for StageError {
             | Self::NoRelaxation { .. }
             | Self::Published { .. } => ErrorKind::Input,
             Self::NoMicroscale { .. }
+            | Self::NoMethods { .. }
             | Self::NoFeedback { .. }
             | Self::TooFewRealisations { .. } => ErrorKind::Failure,
             Self::Interrupted => ErrorKind::Interrupted,

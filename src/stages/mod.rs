@@ -14,10 +14,12 @@
 //! | [`fem`] | waves, rubber | friction over area with all waves at finite deformation |
 //! | [`multilevel`] | waves, friction over area, rubber | averages of both models in one |
 //! | [`tables`] | friction over area | averages with confidence intervals |
+//! | [`methods`] | waves, averages, rubber | the older multiscale methods beside the models |
 
 pub mod approximate;
 pub mod areal;
 pub mod bem;
+mod between_solves;
 pub mod characterise;
 pub mod contract;
 mod error;
@@ -28,6 +30,7 @@ pub mod hybrid;
 pub mod ingest;
 pub(crate) mod kept;
 mod keys;
+pub mod methods;
 pub mod micro;
 pub mod multilevel;
 pub mod realise;
@@ -46,7 +49,7 @@ pub struct Stage(pub &'static Contract);
 
 impl Stage {
     /// All stages in the order of the data, the study of one sine last.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         ingest::STAGE,
         characterise::STAGE,
         approximate::STAGE,
@@ -59,6 +62,7 @@ impl Stage {
         fem::STAGE,
         multilevel::STAGE,
         tables::STAGE,
+        methods::STAGE,
         sinusoid::STAGE,
     ];
 }

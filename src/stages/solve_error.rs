@@ -21,6 +21,9 @@ pub enum SolveError {
     /// The macro surface under a local law.
     #[error(transparent)]
     SoftContact(#[from] crate::multiscale::SoftContactError),
+    /// Friction scale by scale.
+    #[error(transparent)]
+    Homogenisation(#[from] crate::homogenisation::HomogenisationError),
     /// A local law.
     #[error(transparent)]
     Law(#[from] crate::multiscale::LawError),
@@ -59,6 +62,7 @@ impl HasKind for SolveError {
             Self::Effective(source) => source.kind(),
             Self::FiniteDeformation(source) => source.kind(),
             Self::SoftContact(source) => source.kind(),
+            Self::Homogenisation(source) => source.kind(),
             Self::Law(source) => source.kind(),
             Self::Accuracy { .. } | Self::Unresolved { .. } => ErrorKind::Failure,
             Self::Artifact(source) => source.kind(),
@@ -75,6 +79,7 @@ impl SolveError {
             Self::Contact(error) => error.is_no_solution(),
             Self::Effective(error) => error.is_no_solution(),
             Self::FiniteDeformation(error) => error.is_no_solution(),
+            Self::Homogenisation(error) => error.is_no_solution(),
             Self::SoftContact(error) => {
                 matches!(error, crate::multiscale::SoftContactError::NotConverged { .. })
             }

@@ -177,3 +177,22 @@ fn contradictions_are_named() {
         asperity("solve fem --wave 0.0625:0.005 --speed 10 --area 0.1 --route transient").error(2);
     assert!(error.contains("--area is found by the steady route"), "{error}");
 }
+
+/// A slight slope, so that local friction and hysteresis nearly add up.
+#[test]
+fn local_friction_and_a_shear_stress_are_part_of_the_friction() {
+    let without = asperity(&format!("{SINE} --json")).json();
+    assert!(without.get("interface_friction").is_none());
+    let with = asperity(&format!("{SINE} --local-friction 0.3 --json")).json();
+    let [friction, heat, shear] =
+        ["friction_coefficient", "hysteretic_friction", "interface_friction"]
+            .map(|key| number(&with, key));
+    assert!((heat + shear - friction).abs() < 0.02 * friction, "{heat} {shear} {friction}");
+    assert!(friction > number(&without, "friction_coefficient") + 0.3, "{friction}");
+    let table = asperity(&format!("{SINE} --shear-mpa 1")).result();
+    assert!(table.contains("from the shear of the contact"), "{table}");
+    let both = asperity(&format!("{SINE} --shear-mpa 1 --local-friction 0.3")).error(2);
+    assert!(both.contains("cannot be used with"), "{both}");
+    let transient = asperity(&format!("{SINE} --shear-mpa 1 --route transient")).error(2);
+    assert!(transient.contains("--shear-mpa is for the steady route only"), "{transient}");
+}

@@ -20,6 +20,7 @@ mod hybrid;
 mod instrument_files;
 mod interruption;
 mod keys;
+mod methods;
 mod metrology;
 mod multilevel;
 mod reliability;

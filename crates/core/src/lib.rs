@@ -12,6 +12,7 @@
 //! | [`interface`] | shear in the area of contact: its law, its fit, its effect on the contact |
 //! | [`multiscale`] | long waves on the half-space with the short ones as a local law |
 //! | [`fem`] | rubber at finite deformation on a rigid profile: steady and transient |
+//! | [`homogenisation`] | friction scale by scale: the older multiscale methods |
 //! | [`theory`] | Persson, Klüppel-Heinrich: what older theories predict |
 //! | [`water`] | sealed pools, squeeze-out of a film |
 //! | [`mod@reference`] | exact solutions: Westergaard, full contact, Hertz |
@@ -27,6 +28,7 @@ pub mod contact;
 pub mod error_kind;
 pub mod fem;
 pub mod heat;
+pub mod homogenisation;
 pub mod interface;
 pub mod multiscale;
 pub mod numerics;

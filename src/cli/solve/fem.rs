@@ -7,6 +7,7 @@ use std::time::Instant;
 use clap::{ArgGroup, Args, ValueEnum};
 
 use super::fem_output::{Summary, write_fields, write_series};
+use super::interface_options::InterfaceOptions;
 use super::material::MaterialOptions;
 use super::refuse_to_overwrite;
 use super::resolution;
@@ -39,6 +40,8 @@ Examples:
     asperity solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 --columns 256 --json
   Pressed in and dragged in time, with friction over time in a file:
     asperity solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 --columns 32 --route transient --series drag.csv
+  With a shear stress of 1 MPa in the contact:
+    asperity solve fem --wave 0.0625:0.01867 --speed 10 --pressure 1 --shear-mpa 1
   Stress linear in the logarithmic strain:
     asperity solve fem --wave 0.0625:0.002 --speed 10 --pressure 0.1 --rheology linear
 
@@ -66,6 +69,8 @@ pub(in crate::cli) struct Fem {
     area: Option<f64>,
     #[command(flatten)]
     material: MaterialOptions,
+    #[command(flatten)]
+    interface: InterfaceOptions,
     /// The stationary field in the frame of the profile, or time steps as in the thesis.
     #[arg(long, value_name = "ROUTE", value_enum, default_value_t = Route::Steady)]
     route: Route,
@@ -196,6 +201,11 @@ impl Fem {
                 "--fields are those of the steady route: leave it out, or give --series",
             ));
         }
+        if transient && let Some(option) = self.interface.given() {
+            return Err(CliError::input(format!(
+                "{option} is for the steady route only, whose contact slides everywhere in one direction"
+            )));
+        }
         for (option, given) in [
             ("--series", self.series.is_some()),
             ("--drag-periods", self.drag_periods.is_some()),
@@ -276,14 +286,16 @@ impl Fem {
             }
         };
         let solution = &refined.solution;
-        let (friction, heat) = (solution.friction_coefficient, solution.hysteretic_friction);
+        let heat = solution.hysteretic_friction + solution.interface_friction;
+        let friction = solution.friction_coefficient;
         if let Some(warning) = resolution::coarse(friction, heat, solution.mean_separation) {
             note(quiet, format_args!("warning: {warning}; give more --columns"));
         }
         if let Some(path) = &self.fields {
             write_file(path, self.force, |out| write_fields(out, solution))?;
         }
-        Ok(Summary::steady(&refined, start.elapsed().as_secs_f64()))
+        let sheared = self.interface.given().is_some();
+        Ok(Summary::steady(&refined, sheared, start.elapsed().as_secs_f64()))
     }
 
     fn steady_on(
@@ -293,7 +305,9 @@ impl Fem {
         options: BlockOptions,
     ) -> Result<SteadySolution, CliError> {
         let (rheology, speed) = (self.rheology(rubber), self.speed.mm_to_m());
-        let mut contact = SteadyContact::new(rubber, rheology, speed, profile.clone(), options)?;
+        let contact = SteadyContact::new(rubber, rheology, speed, profile.clone(), options)?;
+        let law = self.interface.law();
+        let mut contact = contact.with_interface(law).map_err(CliError::input)?;
         match (self.pressure, self.area) {
             (Some(pressure_mpa), _) => {
                 contact.solve(pressure_mpa.mpa_to_pa()).map_err(|error| with_advice("", error))

@@ -27,6 +27,9 @@ pub(super) struct Summary {
     rows: usize,
     /// Friction from the heat of the branches (steady), or from the work minus the stored energy.
     hysteretic_friction: f64,
+    /// Friction from the power of the shear traction; none without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interface_friction: Option<f64>,
     /// Largest less smallest friction of the averaged periods; transient route only.
     #[serde(skip_serializing_if = "Option::is_none")]
     friction_oscillation: Option<f64>,
@@ -38,7 +41,7 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    pub(super) fn steady(refined: &Refined<SteadySolution>, seconds: f64) -> Self {
+    pub(super) fn steady(refined: &Refined<SteadySolution>, sheared: bool, seconds: f64) -> Self {
         let solution = &refined.solution;
         Self {
             error_estimate: refined.error.map(ErrorEstimate::of_grid),
@@ -52,6 +55,7 @@ impl Summary {
             seconds,
             rows: solution.elements[1],
             hysteretic_friction: solution.hysteretic_friction,
+            interface_friction: sheared.then_some(solution.interface_friction),
             friction_oscillation: None,
             largest_invariant: solution.largest_invariant,
         }
@@ -77,6 +81,7 @@ impl Summary {
             seconds,
             rows: elements[1],
             hysteretic_friction: friction.mean * heat,
+            interface_friction: None,
             friction_oscillation: Some(friction.range),
             error_estimate: None,
         }
@@ -95,6 +100,9 @@ impl Summary {
             ("mean separation", significant(self.mean_separation_mm) + " mm"),
             ("mean pressure", significant(self.pressure_mpa) + " MPa"),
         ];
+        if let Some(interface) = self.interface_friction {
+            lines.insert(2, ("from the shear of the contact", significant(interface)));
+        }
         if let Some(error) = &self.error_estimate {
             lines.insert(1, ("estimated error", format!("{:.1e}", error.total)));
         }

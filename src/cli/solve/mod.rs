@@ -24,6 +24,7 @@ mod error_estimate;
 mod fem;
 mod fem_output;
 mod heat;
+mod interface_options;
 mod map_file;
 mod material;
 mod profile_file;

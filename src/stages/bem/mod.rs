@@ -212,7 +212,7 @@ impl Bem {
     }
 }
 
-pub(crate) fn no_repeats(values: &[f64]) -> bool {
+pub(crate) fn no_repeats<T: PartialEq>(values: &[T]) -> bool {
     values.iter().enumerate().all(|(i, a)| values[..i].iter().all(|b| a != b))
 }
 

@@ -5,10 +5,9 @@ use crate::artifact::{ArtifactError, Digest, SolveStore};
 use crate::fem::error::FemError;
 use crate::fem::profile::RigidProfile;
 use crate::fem::steady::{BlockOptions, SteadyContact};
-use crate::multiscale::sampling::interpolation_errors;
-use crate::numerics::interpolation::CubicHermite;
 use crate::rubber::RubberModel;
-use crate::stages::bem::{Given, Wanted};
+use crate::stages::bem::Wanted;
+use crate::stages::between_solves::{SolvedPoint, ValueBetween, values_at};
 use crate::stages::kept::{self, Kept, KeptPath};
 use crate::stages::realise::Surface;
 use crate::stages::realise::SurfaceKind;
@@ -149,14 +148,9 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// Friction at the areas and pressures that lie between solved ones: friction over pressure, at the pressure of the
-    /// area.
-    ///
-    /// Nodes come into contact one by one, so that the area stands still from one pressure to the next, or nearly
-    /// so, and friction as a function of it would have any slope there. Friction over pressure is smooth. The pressure
-    /// of an area is monotone, from the solves that add some; its error counts by the slope of friction.
+    /// Friction at the areas and pressures that lie between solved ones.
     pub fn values(&self, wanted: &Wanted) -> Vec<FemCurveRow> {
-        values_at(wanted, &self.solves, |row| FemCurveRow {
+        values_between(wanted, &self.solves, |row| FemCurveRow {
             kind: self.surface.kind,
             realisation: self.surface.realisation,
             speed_mm_s: self.speed_mm_s,
@@ -174,7 +168,7 @@ impl<'a> Solver<'a> {
             })
         };
         let solves: Option<Vec<FemSolveRow>> = self.solves.iter().map(coarser).collect();
-        solves.map(|solves| values_at(wanted, &solves, |row| row))
+        solves.map(|solves| values_between(wanted, &solves, |row| row))
     }
 
     fn point(&mut self, pressure: f64) -> Result<FemSolveRow, SolveError> {
@@ -216,73 +210,32 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// [`FemCurve::values`] of solves at ascending pressures; `named` completes a row.
-fn values_at(
+/// Friction between solves at ascending pressures; `named` completes a row.
+fn values_between(
     wanted: &Wanted,
     solves: &[FemSolveRow],
     named: impl Fn(FemCurveRow) -> FemCurveRow,
 ) -> Vec<FemCurveRow> {
-    let touching: Vec<&FemSolveRow> =
-        solves.iter().filter(|row| row.contact_area_fraction > 0.0).collect();
-    let mut rising: Vec<&FemSolveRow> = Vec::new();
-    for row in &touching {
-        let before = rising.last().map_or(0.0, |last| last.contact_area_fraction);
-        if row.contact_area_fraction > before {
-            rising.push(row);
-        }
-    }
-    let column = |rows: &[&FemSolveRow], value: fn(&FemSolveRow) -> f64| -> Vec<f64> {
-        rows.iter().map(|row| value(row)).collect()
+    let solved = |row: &FemSolveRow| SolvedPoint {
+        pressure_mpa: row.pressure_mpa,
+        friction_coefficient: row.friction_coefficient,
+        contact_area_fraction: row.contact_area_fraction,
     };
-    let areas_solved = column(&rising, |row| row.contact_area_fraction);
-    let (Some(first), Some(last)) = (areas_solved.first(), areas_solved.last()) else {
-        return Vec::new();
-    };
-    let log_areas: Vec<f64> = areas_solved.iter().map(|area| area.ln()).collect();
-    let rising_pressures = column(&rising, |row| row.pressure_mpa.ln());
-    let pressure_errors = interpolation_errors(&areas_solved, &rising_pressures);
-    let pressure_errors = CubicHermite::linear(log_areas.clone(), pressure_errors);
-    let area = CubicHermite::monotone(rising_pressures.clone(), log_areas.clone());
-    let pressure = CubicHermite::monotone(log_areas, rising_pressures);
-    let pressures = column(&touching, |row| row.pressure_mpa);
-    let friction = column(&touching, |row| row.friction_coefficient);
-    let log_pressures: Vec<f64> = pressures.iter().map(|pressure| pressure.ln()).collect();
-    let errors =
-        CubicHermite::linear(log_pressures.clone(), interpolation_errors(&pressures, &friction));
-    let friction = CubicHermite::smooth(log_pressures, friction);
-    let row = |area: &f64| {
-        let log_pressure = pressure.at(area.ln());
-        let by_area = friction.derivative(log_pressure).abs() * pressure_errors.at(area.ln());
+    let row = |value: ValueBetween| {
         named(FemCurveRow {
             kind: SurfaceKind::sines(0),
             realisation: 0,
             speed_mm_s: 0.0,
-            given: Given::Area,
-            contact_area_fraction: *area,
-            pressure_mpa: log_pressure.exp(),
-            friction_coefficient: friction.at(log_pressure),
-            interpolation_error: errors.at(log_pressure) + by_area,
+            given: value.given,
+            contact_area_fraction: value.contact_area_fraction,
+            pressure_mpa: value.pressure_mpa,
+            friction_coefficient: value.friction_coefficient,
+            interpolation_error: value.interpolation_error,
             discretisation_error: None,
         })
     };
-    let at_pressure = |pressure_mpa: &f64| {
-        let log_pressure = pressure_mpa.ln();
-        named(FemCurveRow {
-            kind: SurfaceKind::sines(0),
-            realisation: 0,
-            speed_mm_s: 0.0,
-            given: Given::Pressure,
-            contact_area_fraction: area.at(log_pressure).exp(),
-            pressure_mpa: *pressure_mpa,
-            friction_coefficient: friction.at(log_pressure),
-            interpolation_error: errors.at(log_pressure),
-            discretisation_error: None,
-        })
-    };
-    let (least, most) = (pressures[0], pressures[pressures.len() - 1]);
-    let areas = wanted.area_fractions.iter().filter(|area| (*first..=*last).contains(*area));
-    let reached = wanted.pressures_mpa.iter().filter(|p| (least..=most).contains(*p));
-    areas.map(row).chain(reached.map(at_pressure)).collect()
+    let solved: Vec<SolvedPoint> = solves.iter().map(solved).collect();
+    values_at(wanted, &solved).into_iter().map(row).collect()
 }
 
 /// What all solves of a curve have in common.
@@ -404,7 +357,7 @@ mod tests {
         ];
         let area_fractions = vec![0.005, 0.01, 0.0134, 0.02];
         let wanted = Wanted { area_fractions, pressures_mpa: Vec::new() };
-        let rows = values_at(&wanted, &solves, |row| row);
+        let rows = values_between(&wanted, &solves, |row| row);
         let areas: Vec<f64> = rows.iter().map(|row| row.contact_area_fraction).collect();
         assert_eq!(areas, [0.01, 0.0134, 0.02]);
         for pair in rows.windows(2) {

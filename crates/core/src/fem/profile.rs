@@ -30,6 +30,8 @@ pub struct RigidProfile {
 enum Shape {
     /// A short sum of sines is evaluated directly.
     Waves(Vec<Wave>),
+    /// The crests of a sine on a flat.
+    Crests(Wave),
     /// Many heights become a quintic Hermite interpolant of the trigonometric polynomial.
     Samples(Vec<Height>),
 }
@@ -45,6 +47,12 @@ impl RigidProfile {
     /// derivatives at both ends, so the second derivative is continuous.
     pub fn from_heights(heights: &[f64], period: f64) -> Self {
         Self { period, shape: Shape::Samples(samples_of(&spectrum_of(heights), period)) }
+    }
+
+    /// The crests of a sine on a flat at its mean height, one a period: bumps, such as of particles on a flat, of the
+    /// height of the amplitude and half as wide as the period.
+    pub fn crests(wave: Wave) -> Self {
+        Self { period: wave.wavelength, shape: Shape::Crests(wave) }
     }
 
     /// The profile without its shortest waves: those of up to `whole` waves per period are kept, those of up to
@@ -68,6 +76,9 @@ impl RigidProfile {
                     ..*wave
                 };
                 Shape::Waves(waves.iter().map(scaled).collect())
+            }
+            Shape::Crests(wave) => {
+                Shape::Crests(Wave { amplitude: part(1.0) * wave.amplitude, ..*wave })
             }
             Shape::Samples(samples) => {
                 let heights: Vec<f64> = samples.iter().map(|sample| sample.height).collect();
@@ -97,6 +108,7 @@ impl RigidProfile {
                     .fold(self.period, f64::min);
                 (self.period / shortest).round()
             }
+            Shape::Crests(_) => 1.0,
             Shape::Samples(samples) => shortest_waves(samples),
         }
     }
@@ -122,7 +134,7 @@ impl RigidProfile {
     /// The number of heights it interpolates; `None` for a sum of sines.
     pub fn samples(&self) -> Option<usize> {
         match &self.shape {
-            Shape::Waves(_) => None,
+            Shape::Waves(_) | Shape::Crests(_) => None,
             Shape::Samples(samples) => Some(samples.len()),
         }
     }
@@ -131,6 +143,14 @@ impl RigidProfile {
     pub fn at(&self, x: f64) -> Height {
         match &self.shape {
             Shape::Waves(waves) => superposed(waves, x),
+            Shape::Crests(wave) => {
+                let at = superposed(&[*wave], x);
+                if at.height > 0.0 {
+                    at
+                } else {
+                    Height { height: 0.0, slope: 0.0, curvature: 0.0 }
+                }
+            }
             Shape::Samples(samples) => interpolated(samples, self.period, x),
         }
     }

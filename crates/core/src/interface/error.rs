@@ -32,6 +32,22 @@ pub enum ShearError {
         /// The one before it in m/s.
         before: f64,
     },
+    /// A table of friction with fewer than two pressures.
+    #[error("the table of friction has {points} pressure(s), it needs at least two")]
+    TooFewPressures {
+        /// How many there are.
+        points: usize,
+    },
+    /// Pressures of a table that do not ascend.
+    #[error(
+        "the pressure {pressure} Pa comes after {before} Pa: pressures of the table of friction must ascend"
+    )]
+    PressuresNotAscending {
+        /// The pressure in Pa.
+        pressure: f64,
+        /// The one before it in Pa.
+        before: f64,
+    },
     /// A speed outside a table.
     #[error(
         "the table of the shear stress goes from {:e} to {:e} m/s and has no value at {speed:e} m/s{}",
@@ -95,6 +111,8 @@ impl HasKind for ShearError {
         match self {
             Self::OutOfRange { .. }
             | Self::TooFewSpeeds { .. }
+            | Self::TooFewPressures { .. }
+            | Self::PressuresNotAscending { .. }
             | Self::NotAscending { .. }
             | Self::OutsideTable { .. }
             | Self::TooFewMeasurements { .. }

@@ -17,13 +17,16 @@
 //! | [`ShearLaw`] | τ_f over speed and temperature |
 //! | [`fit_shear`] | its constants from measured friction, hysteresis and contact area |
 //! | [`shear_coupling`] | contact under shear for any Poisson ratio |
+//! | [`LocalFriction`] | shear traction over the normal pressure, for contacts at finite deformation and laws of a finer scale |
 
 mod coupling;
 mod error;
 mod fit;
 mod law;
+mod local;
 
 pub use coupling::{ShearCoupling, shear_coupling};
 pub use error::ShearError;
 pub use fit::{FittedShear, Fixed, Interval, MeasuredFriction, PredictedFriction, fit_shear};
 pub use law::{Activation, GaussianShear, ShearLaw, ShearTable};
+pub use local::{FrictionOverPressure, LocalFriction, Traction};

@@ -121,6 +121,11 @@ impl LocalLaw {
         Ok(-self.compliance(pressure))
     }
 
+    /// The separation in m at a pressure in Pa as iterations need it: beyond the samples that of the last.
+    pub(crate) fn height(&self, pressure: f64) -> f64 {
+        self.touch_separation - self.indentation(pressure)
+    }
+
     /// Whether the law holds at a pressure.
     ///
     /// # Errors
@@ -172,7 +177,7 @@ impl LocalLaw {
     }
 
     /// `-dg/dp` in m/Pa.
-    pub(super) fn compliance(&self, pressure: f64) -> f64 {
+    pub(crate) fn compliance(&self, pressure: f64) -> f64 {
         if pressure > self.last().pressure {
             return 0.0;
         }

@@ -10,6 +10,12 @@
 //! positive, and `ε = 0` is the exact law: contact where τ is positive, with the force `c τ`, and the gap `-τ`
 //! elsewhere.
 
+use crate::interface::LocalFriction;
+use crate::multiscale::LocalLaw;
+
+/// Pressure in Pa below which the compliance of a layer, which may be infinite without pressure, is that there.
+const LEAST_PRESSURE: f64 = 1e-3;
+
 /// Forces and gaps of the contact nodes, with their derivatives by τ.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pairs {
@@ -19,6 +25,12 @@ pub(super) struct Pairs {
     pub gaps: Vec<f64>,
     pub force_slopes: Vec<f64>,
     pub gap_slopes: Vec<f64>,
+    /// Heights in m of a layer between profile and rubber: its separation g(p), none without one. The slopes of the gaps
+    /// by τ are those of gap and layer together.
+    pub layer: Vec<f64>,
+    /// Shear forces in N/m, along the profile and per length along x, and their derivatives by λ.
+    pub shears: Vec<f64>,
+    pub shear_slopes: Vec<f64>,
 }
 
 impl Pairs {
@@ -39,6 +51,46 @@ impl Pairs {
             pairs.gap_slopes.push(closed - 1.0);
         }
         pairs
+    }
+
+    /// With the shear of an interface on nodes that are `spacing` in m apart along x.
+    ///
+    /// A piece ds of the surface with the slope h' carries `p ds n = (-h', 1) λ` across and, against the motion,
+    /// `-τ(p) ds t = -(1, h') τ(p) dx` along it: p is λ over the length along x.
+    pub fn sheared(mut self, law: &LocalFriction, spacing: f64) -> Self {
+        let tractions = self.forces.iter().map(|force| law.at(force / spacing));
+        (self.shears, self.shear_slopes) =
+            tractions.map(|traction| (traction.stress * spacing, traction.slope)).unzip();
+        self
+    }
+
+    /// With a layer that is as high as the mean separation of short waves under the local pressure.
+    pub fn on_layer(mut self, law: Option<&LocalLaw>, spacing: f64) -> Self {
+        let Some(law) = law else {
+            self.layer = vec![0.0; self.forces.len()];
+            return self;
+        };
+        for j in 0..self.forces.len() {
+            let pressure = self.forces[j] / spacing;
+            self.layer.push(law.height(pressure));
+            if self.force_slopes[j] > 0.0 {
+                let compliance = law.compliance(pressure.max(LEAST_PRESSURE));
+                self.gap_slopes[j] -= compliance * self.force_slopes[j] / spacing;
+            }
+        }
+        self
+    }
+
+    /// Forces of the profile on node `j` in N/m at its slope h': against the motion, and upwards.
+    pub fn on_node(&self, j: usize, slope: f64) -> [f64; 2] {
+        let (force, shear) = (self.forces[j], self.shears[j]);
+        [force * slope + shear, force - shear * slope]
+    }
+
+    /// Derivatives of [`Self::on_node`] by τ.
+    pub fn on_node_slopes(&self, j: usize, slope: f64) -> [f64; 2] {
+        let shear = self.shear_slopes[j];
+        [slope + shear, 1.0 - shear * slope].map(|change| self.force_slopes[j] * change)
     }
 }
 

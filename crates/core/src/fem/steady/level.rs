@@ -4,11 +4,14 @@ use super::block::Block;
 use super::contact::Pairs;
 use super::grid::Grid;
 use super::long::{Long, Value};
+use super::plate::Plate;
 use super::row::Validity;
 use super::state::{Heights, State};
 use super::stiffness::{Positions, fix_x, pattern, touch};
-use super::{BlockOptions, NotConverged, Setting};
+use super::{BlockOptions, NotConverged, Setting, UpperEdge};
 use crate::fem::profile::RigidProfile;
+use crate::interface::LocalFriction;
+use crate::multiscale::LocalLaw;
 use crate::numerics::direct::{FactorError, SparseLu};
 use std::f64::consts::PI;
 
@@ -60,6 +63,9 @@ pub(super) struct Level {
     pub cost: Cost,
     /// c of the contact in Pa.
     stiffness: f64,
+    interface: LocalFriction,
+    layer: Option<LocalLaw>,
+    plate: Option<Plate>,
     positions: Positions,
     pub factors: SparseLu,
     /// Whether the factors belong to a state that is near enough.
@@ -86,10 +92,16 @@ impl Level {
         let pattern = pattern(&grid);
         let positions = Positions::new(&grid, &pattern);
         let factors = SparseLu::analyse(pattern, &grid.coordinates());
+        let modulus = setting.rubber.reduced_modulus(shortest).norm();
+        let plated = options.upper_edge == UpperEdge::Plate;
+        let plate = plated.then(|| Plate::new(&grid, modulus));
         Self {
             surface: Surface::new(profile, options.columns),
             cost: Cost::default(),
             stiffness: STIFFNESS * setting.rubber.reduced_modulus(shortest).norm(),
+            interface: setting.interface.clone(),
+            layer: setting.layer.clone(),
+            plate,
             positions,
             factors,
             factored: false,
@@ -115,6 +127,8 @@ impl Level {
             self.stiffness,
             self.barrier(state.pressure, barrier),
         )
+        .sheared(&self.interface, self.grid().spacing(0))
+        .on_layer(self.layer.as_ref(), self.grid().spacing(0))
     }
 
     /// The unknown of a node with this force in N/m and gap in m.
@@ -140,7 +154,8 @@ impl Level {
         }
         let lift = highest + high;
         let mut displacements = vec![Long::default(); 2 * grid.nodes()];
-        displacements.iter_mut().skip(1).step_by(2).for_each(|z| *z = lift.into());
+        let layer = self.layer.as_ref().map_or(0.0, LocalLaw::touch_separation);
+        displacements.iter_mut().skip(1).step_by(2).for_each(|z| *z = (lift + layer).into());
         let force = length * pressure * grid.spacing(0);
         let unknown = |z: &f64| self.unknown(force / (lift - z), lift - z).into();
         State { displacements, contact: heights.iter().map(unknown).collect(), pressure }
@@ -150,22 +165,27 @@ impl Level {
     pub fn balance(&mut self, state: &mut State, barrier: f64) -> Result<Balance, NotConverged> {
         let pairs = self.pairs(state, barrier);
         let gaps = pairs.gaps.iter().zip(&pairs.gap_slopes).zip(&state.contact);
-        let nodes = state.displacements.chunks_exact_mut(2).zip(&self.surface.heights);
-        for ((node, height), ((gap, slope), tau)) in nodes.zip(gaps) {
-            node[1] = Long::from(*height).plus(*gap).plus(slope * tau.rest());
+        let heights = self.surface.heights.iter().zip(&pairs.layer);
+        let nodes = state.displacements.chunks_exact_mut(2).zip(heights);
+        for ((node, (height, layer)), ((gap, slope), tau)) in nodes.zip(gaps) {
+            node[1] = Long::from(*height).plus(*layer).plus(*gap).plus(slope * tau.rest());
         }
         let (mut residual, validity) =
             self.block.deform(&state.displacements).map_err(|_| NotConverged)?;
-        let contact = pairs.forces.iter().zip(&self.surface.slopes);
-        for (node, (force, slope)) in residual.chunks_exact_mut(2).zip(contact) {
-            node[0] += force * slope;
-            node[1] -= force;
+        let contact = self.surface.slopes.iter().enumerate();
+        for (node, (j, slope)) in residual.chunks_exact_mut(2).zip(contact) {
+            let [along, up] = pairs.on_node(j, *slope);
+            node[0] += along;
+            node[1] -= up;
         }
         let upper = self.upper_edge();
         let load = state.pressure * self.grid().period / (upper.len() / 2) as f64;
         for node in residual[upper].chunks_exact_mut(2) {
             node[0] = 0.0;
             node[1] += load;
+        }
+        if let Some(plate) = &self.plate {
+            plate.add(|entry| state.displacements[entry].value(), &mut residual);
         }
         let norm = self.norm(&residual, state.pressure);
         if norm.is_finite() {
@@ -196,11 +216,13 @@ impl Level {
         let upper = self.upper_edge();
         displacements[upper.clone()].iter_mut().step_by(2).for_each(|x| *x = 0.0);
         let mut forces = self.block.tangent(&displacements);
-        let contact = pairs.force_slopes.iter().zip(&self.surface.slopes).enumerate();
-        for (j, (change, slope)) in contact {
-            let force = change * changes[2 * j + 1];
-            forces[2 * j] += force * slope;
-            forces[2 * j + 1] -= force;
+        for (j, slope) in self.surface.slopes.iter().enumerate() {
+            let [along, up] = pairs.on_node_slopes(j, *slope);
+            forces[2 * j] += along * changes[2 * j + 1];
+            forces[2 * j + 1] -= up * changes[2 * j + 1];
+        }
+        if let Some(plate) = &self.plate {
+            plate.add(|entry| displacements[entry], &mut forces);
         }
         let fixed = forces[upper.clone()].iter_mut().step_by(2);
         fixed
@@ -217,9 +239,16 @@ impl Level {
         }
         let pattern = self.factors.pattern();
         let mut values = self.positions.assemble(&self.block, pattern);
-        let slopes = pairs.gap_slopes.iter().zip(&pairs.force_slopes).zip(&self.surface.slopes);
-        let contact: Vec<[f64; 3]> =
-            slopes.map(|((gap, force), slope)| [*gap, force * slope, -force]).collect();
+        let slopes = pairs.gap_slopes.iter().zip(&self.surface.slopes).enumerate();
+        let contact: Vec<[f64; 3]> = slopes
+            .map(|(j, (gap, slope))| {
+                let [along, up] = pairs.on_node_slopes(j, *slope);
+                [*gap, along, -up]
+            })
+            .collect();
+        if let Some(plate) = &self.plate {
+            plate.add_to(pattern, &mut values);
+        }
         touch(pattern, &mut values, &contact);
         fix_x(pattern, &mut values, self.upper_edge().start / 2, self.stiffness);
         self.cost.factorisations += 1;

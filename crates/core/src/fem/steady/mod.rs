@@ -27,6 +27,7 @@
 //! | `level`, `newton` | the equations on one grid, and Newton's method with GMRES |
 //! | `path`, `transfer` | growing pressure, finer grids, from the barrier to the exact contact |
 //! | `growth`, `lift` | profiles of many scales: octaves of waves added at constant pressure |
+//! | `plate` | a rigid plate on the upper edge |
 //! | `ladder` | their exact contact, from coarse grids to fine ones |
 //! | `state` | the unknowns at a point of a path |
 //! | `last` | the last solution before a pressure that has none |
@@ -40,6 +41,8 @@ mod flow;
 mod grid;
 mod growth;
 mod hardening;
+#[cfg(test)]
+mod interface_tests;
 mod ladder;
 mod lanes;
 mod last;
@@ -51,6 +54,7 @@ mod newton;
 mod options;
 mod passage;
 mod path;
+mod plate;
 mod point;
 mod row;
 mod setting;
@@ -62,10 +66,12 @@ mod tangent;
 mod tests;
 mod transfer;
 
-pub use options::{BlockOptions, COLUMNS_RANGE, HEIGHT_RANGE};
+pub use options::{BlockOptions, COLUMNS_RANGE, HEIGHT_RANGE, UpperEdge};
 
 use super::error::{BeyondLaw, FemError, PathEnd};
 use super::profile::RigidProfile;
+use crate::interface::{LocalFriction, ShearError};
+use crate::multiscale::LocalLaw;
 use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rheology, Rubber};
 use ladder::Ladder;
@@ -137,14 +143,20 @@ impl SteadyContact {
         let finite = FiniteStrainRubber::new(rubber, rheology)?;
         check_speed(speed)?;
         options.check(profile.period())?;
-        let interrupt = Interrupt::default();
-        let setting = Setting { rubber: rubber.clone(), finite, speed, interrupt };
+        let (interface, interrupt) = (LocalFriction::None, Interrupt::default());
+        let layer = None;
+        let setting =
+            Setting { rubber: rubber.clone(), finite, speed, interface, layer, interrupt };
+        Ok(Self::of(setting, profile, options))
+    }
+
+    fn of(setting: Setting, profile: RigidProfile, options: BlockOptions) -> Self {
         let ladder = if has_many_scales(&profile) {
             Ladder::new(options.columns, &profile)
         } else {
             Ladder::none(options.columns)
         };
-        Ok(Self { setting, profile, options, path: None, ladder, solved: Vec::new(), beyond: None })
+        Self { setting, profile, options, path: None, ladder, solved: Vec::new(), beyond: None }
     }
 
     /// A contact that a longer profile lets last for a `length` in m of sliding only, after which branches still carry
@@ -155,6 +167,25 @@ impl SteadyContact {
         let period = self.profile.period() / *speed;
         *finite = finite.clone().in_a_contact_that_lasts(length / *speed, period);
         self
+    }
+
+    /// With a shear traction of the contact, which slides everywhere in one direction.
+    ///
+    /// # Errors
+    /// [`ShearError::OutOfRange`] for a constant that no law has.
+    pub fn with_interface(self, law: LocalFriction) -> Result<Self, ShearError> {
+        law.validate()?;
+        let setting = Setting { interface: law, ..self.setting };
+        // Nothing that was solved under another interface is kept.
+        Ok(Self::of(setting, self.profile, self.options))
+    }
+
+    /// With short waves between profile and rubber, as a layer whose height is their mean separation g(p) under the local
+    /// pressure. Where a pressure lies beyond the samples of the law, the height is that of the last.
+    #[must_use]
+    pub fn on_layer(self, law: LocalLaw) -> Self {
+        let setting = Setting { layer: Some(law), ..self.setting };
+        Self::of(setting, self.profile, self.options)
     }
 
     /// With an interrupt that ends a solve between two Krylov iterations.

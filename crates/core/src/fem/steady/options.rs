@@ -27,6 +27,18 @@ pub struct BlockOptions {
     pub grading: Grading,
     /// Whether rows whose elements are higher than wide have half as many columns as those below.
     pub coarsening: bool,
+    /// What holds the block from above.
+    pub upper_edge: UpperEdge,
+}
+
+/// What holds the block from above; neither lets the edge move along x against itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum UpperEdge {
+    /// An even pressure: nodes move up and down each by itself. Traction is given.
+    #[default]
+    Pressure,
+    /// A rigid plate that carries the mean pressure: nodes move up and down together. Displacement is given.
+    Plate,
 }
 
 impl BlockOptions {
@@ -39,6 +51,7 @@ impl BlockOptions {
             height_ratio: 0.75,
             grading: Grading { first: 1.0, growth: 1.0 + GROWTH },
             coarsening: columns >= MANY_COLUMNS,
+            upper_edge: UpperEdge::Pressure,
         }
     }
 

@@ -3,6 +3,8 @@
 use super::super::profile::RigidProfile;
 use super::flow::Relaxation;
 use super::row::Material;
+use crate::interface::LocalFriction;
+use crate::multiscale::LocalLaw;
 use crate::numerics::Interrupt;
 use crate::rubber::{FiniteStrainRubber, Rubber};
 use std::f64::consts::TAU;
@@ -16,6 +18,10 @@ pub(super) struct Setting {
     pub finite: FiniteStrainRubber,
     /// Speed in m/s.
     pub speed: f64,
+    /// Shear traction of the contact.
+    pub interface: LocalFriction,
+    /// Short waves between profile and rubber.
+    pub layer: Option<LocalLaw>,
     pub interrupt: Interrupt,
 }
 

@@ -14,6 +14,9 @@ pub struct SteadySolution {
     /// Friction coefficient from the power that the branches turn into heat, over `p v`. On the
     /// converged mesh it equals [`Self::friction_coefficient`]; the difference measures the mesh.
     pub hysteretic_friction: f64,
+    /// Friction coefficient from the power of the shear traction, over `p v`: zero without one. On the converged mesh
+    /// friction is the sum of both.
+    pub interface_friction: f64,
     /// Contact area fraction: length in contact along x over the period, edges read between nodes.
     pub contact_area_fraction: f64,
     /// Mean separation in m: of the mean planes of the deformed surface and the profile.
@@ -57,7 +60,7 @@ pub struct ContactNode {
     pub profile_height: f64,
     /// Normal pressure in Pa on the deformed surface, which is the vertical force over the length along x.
     pub pressure: f64,
-    /// Vertical gap in m.
+    /// Vertical gap in m, above the mean of the short waves where they are a layer.
     pub separation: f64,
 }
 
@@ -67,26 +70,34 @@ impl SteadySolution {
         let grid = level.grid();
         let (n, spacing) = (grid.contact_nodes(), grid.spacing(0));
         let (pairs, surface) = (level.pairs(state, 0.0), &level.surface);
-        let load: f64 = pairs.forces.iter().sum();
-        let traction: f64 = pairs.forces.iter().zip(&surface.slopes).map(|(f, h)| f * h).sum();
+        let [mut traction, mut load] = [0.0; 2];
+        for (j, slope) in surface.slopes.iter().enumerate() {
+            let [along, up] = pairs.on_node(j, *slope);
+            traction += along;
+            load += up;
+        }
+        let sheared = surface.slopes.iter().zip(&pairs.shears).zip(slip_speeds(level, state));
+        let slip: f64 = sheared.map(|((h, shear), speed)| shear * (1.0 + h * h) * speed).sum();
         let nodes: Vec<ContactNode> = (0..n)
             .map(|j| ContactNode {
                 x: j as f64 * spacing,
                 profile_height: surface.heights[j] - surface.scale.mean,
                 pressure: pairs.forces[j] / spacing,
-                separation: pairs.gaps[j],
+                separation: pairs.gaps[j] + pairs.layer[j],
             })
             .collect();
         let touching: f64 = (0..n)
             .map(|j| touching_part(&pairs.forces, j, n - 1) + touching_part(&pairs.forces, j, 1))
             .sum();
-        let heights = surface.heights.iter().zip(&pairs.gaps).map(|(z, gap)| z + gap);
+        let above = pairs.gaps.iter().zip(&pairs.layer).map(|(gap, layer)| gap + layer);
+        let heights = surface.heights.iter().zip(above).map(|(z, above)| z + above);
         let mean_height = heights.sum::<f64>() / n as f64;
         let power = level.block.dissipation(&state.displacements);
         Self {
             mean_pressure: state.pressure,
             friction_coefficient: traction / load,
             hysteretic_friction: power / (load * speed),
+            interface_friction: slip / load,
             contact_area_fraction: touching / n as f64,
             mean_separation: mean_height - surface.scale.mean,
             shear: state.shear(grid),
@@ -105,6 +116,16 @@ impl SteadySolution {
         let &Self { friction_coefficient, contact_area_fraction, .. } = coarser;
         Self { coarser: Some(Coarser { friction_coefficient, contact_area_fraction }), ..self }
     }
+}
+
+/// Speed of the rubber along x at each contact node, over that of the block: `ds/dξ` with the label `ξ = s - q`.
+fn slip_speeds(level: &Level, state: &State) -> Vec<f64> {
+    let grid = level.grid();
+    let (n, spacing) = (grid.contact_nodes(), grid.spacing(0));
+    let contact = grid.row(&state.displacements, 0);
+    let label = |j: usize| contact[2 * (j % n)].value();
+    let stretch = |j: usize| 1.0 - (label(j + 1) - label(j + n - 1)) / (2.0 * spacing);
+    (0..n).map(|j| 1.0 / stretch(j)).collect()
 }
 
 /// Length in contact beside a contact node, in whole elements: a half towards another contact node,

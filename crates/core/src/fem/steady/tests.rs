@@ -14,7 +14,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::time::{Duration, Instant};
 
-const PERIOD: f64 = 6.25e-5;
+pub(super) const PERIOD: f64 = 6.25e-5;
 
 const YEOH: Rheology = Rheology::Yeoh { c2_over_c1: -0.1, c3_over_c1: 0.01 };
 const ARRUDA_BOYCE: Rheology = Rheology::ArrudaBoyce { locking_stretch: 2.0 };
@@ -22,7 +22,8 @@ const LAWS: [Rheology; 4] = [Rheology::NeoHookean, Rheology::Linear, YEOH, ARRUD
 
 pub(super) fn setting(rubber: &Rubber, rheology: Rheology, speed: f64) -> Setting {
     let finite = FiniteStrainRubber::new(rubber, rheology).unwrap();
-    Setting { rubber: rubber.clone(), finite, speed, interrupt: Default::default() }
+    let (interface, layer, interrupt) = Default::default();
+    Setting { rubber: rubber.clone(), finite, speed, interface, layer, interrupt }
 }
 
 fn block(rubber: &Rubber, rheology: Rheology, options: &BlockOptions, speed: f64) -> Block {
@@ -34,7 +35,7 @@ fn long(values: &[f64]) -> Vec<Long> {
     values.iter().map(|value| Long::from(*value)).collect()
 }
 
-fn largest(values: &[f64]) -> f64 {
+pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
 
