@@ -43,7 +43,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         for upper_edge in [UpperEdge::Pressure, UpperEdge::Plate] {
             let options = BlockOptions { height_ratio, upper_edge, ..usual };
             let name = format!("H/L {height_ratio}, {upper_edge:?}");
-            print(&name, &steady(options, PRESSURE, SPEED)?);
+            match steady(options, PRESSURE, SPEED) {
+                Ok(solution) => print(&name, &solution),
+                Err(error) => println!("{name:<28} {error}"),
+            }
         }
     }
     for columns in [16, 32, 64, 128, 256, 512] {

@@ -106,7 +106,7 @@ pub fn run(
             }));
             curves.extend(rows);
         }
-        warnings.extend(doubt(shared, curve, missing));
+        warnings.extend(doubt(shared, curve, [missing, shared.surfaces.len() * wanted.count()]));
     }
     if curves.is_empty() {
         let reason = warnings.first().cloned().unwrap_or_else(|| "there are none".to_owned());
@@ -157,15 +157,14 @@ fn pressures(half_space: &[CurveRow], kind: SurfaceKind, speed_mm_s: f64) -> Opt
 }
 
 /// A warning where a curve, or a part of it, is missing.
-fn doubt(shared: &Shared, curve: &Curve, missing: usize) -> Option<String> {
+fn doubt(shared: &Shared, curve: &Curve, [missing, all]: [usize; 2]) -> Option<String> {
     let Shared { task, surfaces } = shared;
     let of = format!("{}, {}", surfaces[0].kind, task.name());
     match curve {
         Curve::Unsolved(reason) => Some(format!("{of}: no solution: {reason}")),
         Curve::Solved { .. } if missing > 0 => Some(format!(
-            "{of}: {missing} of {} contact areas and pressures of the surfaces it stands for are not reached, or lie on local \
-             pressures beyond the law of a shorter scale",
-            surfaces.len() * (missing / surfaces.len()).max(1)
+            "{of}: {missing} of {all} values are missing: their area is not reached, or a part of their load is on local pressures \
+             for which a shorter scale has no solution",
         )),
         Curve::Solved { .. } => None,
     }

@@ -115,7 +115,7 @@ impl<'a> Scale<'a> {
                 let contact = contact.interruptible(interrupt).with_interface(friction.clone())?;
                 Solver::Finite(Box::new(match layer {
                     None => contact,
-                    Some(law) => contact.on_layer(law),
+                    Some(law) => contact.on_layer(law.in_proportion_below_the_samples()),
                 }))
             }
         };

@@ -126,6 +126,13 @@ impl LocalLaw {
         self.touch_separation - self.indentation(pressure)
     }
 
+    /// The same law, but in proportion to the pressure below the first sample: its slope there is finite, as solvers need it
+    /// that take the separation for a given pressure.
+    pub(crate) fn in_proportion_below_the_samples(mut self) -> Self {
+        self.first_slope = 1.0;
+        self
+    }
+
     /// Whether the law holds at a pressure.
     ///
     /// # Errors

@@ -169,7 +169,7 @@ fn a_plate_holds_the_edge_flat() {
     };
     let [low, high] = [0.3, 1.5].map(|height| {
         let [free, plate] = [UpperEdge::Pressure, UpperEdge::Plate].map(|e| friction(height, e));
-        assert!(plate.1 < 1e-5 * free.1.max(1e-9 * PERIOD), "{plate:?} {free:?}");
+        assert!(plate.1 < 2e-3 * free.1.max(1e-6 * PERIOD), "{plate:?} {free:?}");
         plate.0 / free.0 - 1.0
     });
     println!("plate over even pressure: {low:e} at 0.3, {high:e} at 1.5 periods");

@@ -17,6 +17,8 @@ use std::f64::consts::PI;
 
 /// The contact stiffness over the modulus of the block's shortest wave.
 const STIFFNESS: f64 = 1.5;
+/// Pressure at which the stiffness of a layer is read, over the largest of its law.
+const LAYER_PRESSURE: f64 = 0.1;
 
 /// The profile at the contact nodes.
 #[derive(Debug, Clone)]
@@ -93,12 +95,19 @@ impl Level {
         let positions = Positions::new(&grid, &pattern);
         let factors = SparseLu::analyse(pattern, &grid.coordinates());
         let modulus = setting.rubber.reduced_modulus(shortest).norm();
+        // On a soft layer a node moves by more than the gap that it had: with the stiffness of both its unknown changes as
+        // much beside the contact as in it, which Newton's method needs.
+        let soft = setting.layer.as_ref().map(|law| {
+            let pressure = LAYER_PRESSURE * law.largest_pressure();
+            grid.spacing(0) * pressure / (law.touch_separation() - law.height(pressure))
+        });
+        let stiffness = (STIFFNESS * modulus).min(soft.unwrap_or(f64::INFINITY));
         let plated = options.upper_edge == UpperEdge::Plate;
         let plate = plated.then(|| Plate::new(&grid, modulus));
         Self {
             surface: Surface::new(profile, options.columns),
             cost: Cost::default(),
-            stiffness: STIFFNESS * setting.rubber.reduced_modulus(shortest).norm(),
+            stiffness,
             interface: setting.interface.clone(),
             layer: setting.layer.clone(),
             plate,
@@ -185,7 +194,7 @@ impl Level {
             node[1] += load;
         }
         if let Some(plate) = &self.plate {
-            plate.add(|entry| state.displacements[entry].value(), &mut residual);
+            plate.add(&state.displacements, &mut residual);
         }
         let norm = self.norm(&residual, state.pressure);
         if norm.is_finite() {
@@ -222,7 +231,7 @@ impl Level {
             forces[2 * j + 1] -= up * changes[2 * j + 1];
         }
         if let Some(plate) = &self.plate {
-            plate.add(|entry| displacements[entry], &mut forces);
+            plate.add(&displacements, &mut forces);
         }
         let fixed = forces[upper.clone()].iter_mut().step_by(2);
         fixed

@@ -2,15 +2,16 @@
 //!
 //! Without it the edge carries an even pressure and its nodes move up and down each by itself (traction given); under the
 //! plate they move up and down together (displacement given), and the pressure is the mean. Neighbouring nodes are tied by
-//! springs so stiff that the edge stays flat to a share of a millionth of what it would move.
+//! springs so stiff that the edge bends by a thousandth or less of what it would.
 
 use super::grid::Grid;
 #[cfg(test)]
 use super::level::Level;
+use super::long::Value;
 use crate::numerics::direct::{Block, BlockPattern};
 
 /// Stiffness of the springs over that of the block's longest wave.
-const STIFFNESS: f64 = 1e6;
+const STIFFNESS: f64 = 1e4;
 
 /// Springs between the nodes of the upper edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,10 +32,10 @@ impl Plate {
     }
 
     /// Adds the forces of the springs at displacements of all nodes, `(x, z)` of each together.
-    pub fn add(&self, z: impl Fn(usize) -> f64, forces: &mut [f64]) {
-        let at = |j: usize| z(2 * (self.first + j % self.nodes) + 1);
+    pub fn add<T: Value>(&self, displacements: &[T], forces: &mut [f64]) {
+        let at = |j: usize| displacements[2 * (self.first + j % self.nodes) + 1];
         for j in 0..self.nodes {
-            let bent = (at(j) - at(j + 1)) + (at(j) - at(j + self.nodes - 1));
+            let bent = at(j).minus(at(j + 1)) + at(j).minus(at(j + self.nodes - 1));
             forces[2 * (self.first + j) + 1] += self.stiffness * bent;
         }
     }
