@@ -1,7 +1,7 @@
 //! Friction, contact area and separation of a group of waves over its mean pressure.
 
+use super::HomogenisationError;
 use super::scale::{Scale, ScalePoint, Setting};
-use super::{HomogenisationError, Mechanics};
 use crate::fem::profile::RigidProfile;
 use crate::interface::{FrictionOverPressure, LocalFriction};
 use crate::multiscale::{LawEnd, LocalLaw};
@@ -152,10 +152,6 @@ const FEWEST_NODES: f64 = 3.0;
 
 /// Whether the contact of a group is of a few nodes alone.
 fn too_slight(setting: &Setting, profile: &RigidProfile, point: &ScalePoint) -> bool {
-    let nodes = match setting.mechanics {
-        Mechanics::HalfSpace | Mechanics::FiniteDeformation => {
-            setting.resolution as f64 * profile.shortest_waves()
-        }
-    };
+    let nodes = setting.resolution as f64 * profile.shortest_waves();
     point.area_of_group * nodes < FEWEST_NODES
 }
