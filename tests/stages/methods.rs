@@ -1,7 +1,8 @@
 //! The older multiscale methods beside the models of a run.
 
-use super::{Campaign, digests, recipe, run};
+use super::{Campaign, digests, recipe, run, try_run};
 use asperity::artifact::RunView;
+use asperity::pipeline::Selection;
 use asperity::recipe::Recipe;
 use asperity::stages::bem::CURVES;
 use asperity::stages::methods::{
@@ -107,6 +108,24 @@ fn at_finite_deformation_gentle_waves_have_the_friction_of_the_half_space() {
         let ratio = row.friction_coefficient / other.unwrap().friction_coefficient;
         assert!((0.8..1.25).contains(&ratio), "{ratio} at {row:?}");
     }
+}
+
+/// The first contact of a curve may have more area than is wanted: another one is needed beside it.
+#[test]
+fn one_wave_is_a_surface_that_cannot_be_split() {
+    let one = |section: &str| {
+        let campaign = campaign(section);
+        campaign.edit("recipe.toml", "waves = [2, 3]", "waves = [1]");
+        campaign.edit("recipe.toml", "waves = [3]", "waves = [1]");
+        campaign
+    };
+    let alone = one("methods = [\"recursive\"]\ncolumns_per_shortest_wavelength = 32\n");
+    let out = alone.path("out");
+    run(&recipe(&alone), &out);
+    assert!(!RunView::of(&out).rows(METHOD_CURVES).unwrap().is_empty());
+    let split = one("methods = [\"split\"]\nmechanics = [\"half-space\"]\n");
+    let error = try_run(&recipe(&split), &split.path("out"), Selection::default()).unwrap_err();
+    assert!(error.to_string().contains("one wave cannot be split"), "{error}");
 }
 
 #[test]

@@ -64,6 +64,9 @@ fn plan<'a>(request: &'a Request<'a>) -> Option<Planned<'a>> {
     Some(planned)
 }
 
+/// Why there may be nothing to solve.
+const ALONE: &str = "a surface of one wave cannot be split; methods = [\"recursive\"] takes it";
+
 /// A task, and the surfaces that it stands for.
 struct Shared<'a> {
     task: Task,
@@ -109,7 +112,7 @@ pub fn run(
         warnings.extend(doubt(shared, curve, [missing, shared.surfaces.len() * wanted.count()]));
     }
     if curves.is_empty() {
-        let reason = warnings.first().cloned().unwrap_or_else(|| "there are none".to_owned());
+        let reason = warnings.first().cloned().unwrap_or_else(|| ALONE.to_owned());
         return Err(StageError::NoMethods { reason });
     }
     let friction = run.rows(FRICTION)?;

@@ -124,7 +124,9 @@ pub(super) fn contacts(
             Ok(point) => {
                 failures = 0;
                 points.push(point);
-                if enough.is_some_and(|[most, area]| pressure >= most && point.area >= area) {
+                let is_enough = |[most, area]: [f64; 2]| pressure >= most && point.area >= area;
+                // Between one contact and nothing no value can be had.
+                if points.len() > 1 && enough.is_some_and(is_enough) {
                     break;
                 }
             }
