@@ -83,7 +83,7 @@ impl From<Option<f64>> for Cell {
 }
 
 /// A workbook with a sheet for each table: the caption, the names of the columns, and all digits of the
-/// numbers, every realisation in a column of its own. Cells stay empty where there is no number. Total friction, and
+/// numbers, every realisation in a column of its own. Missing numbers are empty cells. Total friction, and
 /// friction with heat and softening, have a sheet each where there are rows.
 ///
 /// # Errors

@@ -37,7 +37,7 @@ fn run_again(campaign: &Campaign, damaged: &Path) {
     }
 }
 
-/// What a file holds after each damage, by name; none where it is gone, or where the damage changes nothing.
+/// Content of a file after each damage, by name: `None` if the file is removed, or if the damage does not change it.
 fn damages(
     bytes: &[u8],
     foreign: Option<Vec<u8>>,
@@ -57,6 +57,15 @@ fn damages(
         ("empty", Some(Vec::new())),
         ("gone", None),
     ]
+}
+
+/// A file of another run in place of one: of stored solves, whose name says what they are, another solve of the same run.
+fn foreign_file(name: &Path, solves: &[PathBuf], spare: &Path, other: &Path) -> PathBuf {
+    if name.starts_with("solves") {
+        spare.join(solves.iter().find(|solve| *solve != name).unwrap())
+    } else {
+        other.join(name)
+    }
 }
 
 #[test]
@@ -89,14 +98,8 @@ fn damage_to_any_file_is_found_named_and_mended() {
     let mut done = 0;
     for name in damaged.iter().copied() {
         let bytes = fs::read(spare.join(name)).unwrap();
-        // Solves of one name are one solve in every run: there, another solve.
-        let another = if name.starts_with("solves") {
-            let solve = |name: &&PathBuf| name.starts_with("solves");
-            spare.join(names.iter().filter(solve).find(|solve| *solve != name).unwrap())
-        } else {
-            other.path("out").join(name)
-        };
-        let foreign = fs::read(another).ok().filter(|other| *other != bytes);
+        let foreign = fs::read(foreign_file(name, &solves, &spare, &other.path("out")));
+        let foreign = foreign.ok().filter(|other| *other != bytes);
         let damages = damages(&bytes, foreign, rng.random_range(0..8 * bytes.len()));
         for (what, content) in damages {
             let gone = what == "gone";

@@ -110,7 +110,7 @@ fn at_finite_deformation_gentle_waves_have_the_friction_of_the_half_space() {
     }
 }
 
-/// The first contact of a curve may have more area than is wanted: another one is needed beside it.
+/// A curve does not end with its first contact, even if that has the largest area of the recipe: values are interpolated.
 #[test]
 fn one_wave_is_a_surface_that_cannot_be_split() {
     let one = |section: &str| {

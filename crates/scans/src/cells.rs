@@ -35,7 +35,7 @@ pub fn split_cells(text: &str, separator: char) -> Vec<String> {
     }
 }
 
-/// A number as a file writes it; `None` for what is none with that decimal mark.
+/// A number as a file writes it; `None` if the cell is not a number with that decimal mark.
 pub fn number(cell: &str, mark: DecimalMark) -> Option<f64> {
     match mark {
         DecimalMark::Point => cell.parse().ok(),

@@ -62,7 +62,7 @@ pub(super) struct Task {
     pub groups: Vec<Group>,
     /// Lowest and highest mean pressure in Pa.
     pub range: [f64; 2],
-    /// Mean pressure in Pa and contact area fraction beyond which nothing is wanted.
+    /// Largest mean pressure in Pa and contact area fraction at which the recipe asks for friction.
     pub enough: [f64; 2],
 }
 

@@ -125,7 +125,7 @@ pub(super) fn contacts(
                 failures = 0;
                 points.push(point);
                 let is_enough = |[most, area]: [f64; 2]| pressure >= most && point.area >= area;
-                // Between one contact and nothing no value can be had.
+                // Values are interpolated, which needs two contacts.
                 if points.len() > 1 && enough.is_some_and(is_enough) {
                     break;
                 }

@@ -41,7 +41,7 @@ pub struct Traction {
 }
 
 impl LocalFriction {
-    /// The traction at a pressure in Pa; none where there is no pressure.
+    /// The traction at a pressure in Pa, zero at pressures of zero and below.
     pub fn at(&self, pressure: f64) -> Traction {
         if pressure <= 0.0 {
             return Traction::default();
